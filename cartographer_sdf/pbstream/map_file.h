@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Cartographer's serialized state (.pbstream), 2D, format versions 1 and 2:
+// read what the core needs, and write a corrected copy that keeps every other
+// record as it is. Files are streamed: memory holds the pose graph and one
+// record at a time, never the grids or the sensor data of the whole file.
+//
+// Any bytes give a map or one clear sentence, never a crash.
+
+#ifndef CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
+#define CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+
+namespace cartographer_sdf {
+
+// What the file says of a submap, beside its pose in the pose graph.
+struct SubmapSummary {
+  bool finished = false;
+  int num_range_data = 0;
+  Rigid2 T_local_submap;
+  bool is_tsdf = false;
+  // Size and resolution of the stored grid.
+  CellGeometry geometry;
+  int num_known_cells = 0;
+};
+
+struct MapState {
+  int format_version = 0;
+  PoseGraph pose_graph;
+  std::map<SubmapId, SubmapSummary> submaps;
+  int num_trajectories = 0;
+  // Number of records of each kind, by the name of the field of
+  // SerializedData ("submap", "node", "imu_data", ..., "unknown").
+  std::map<std::string, int> num_records;
+};
+
+// Fraction of the file that is done, in [0, 1].
+using ProgressCallback = std::function<void(double)>;
+// Called for each submap with a grid, in file order. The grid is in the submap
+// frame; a TSDF's cells become the occupancy that its distance implies.
+using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
+                                          const OccupancyGrid&)>;
+
+[[nodiscard]] absl::StatusOr<MapState> ReadMap(
+    const std::string& path, const SubmapCallback& on_submap = {},
+    const ProgressCallback& on_progress = {});
+
+// Points of a node's range data in its gravity-aligned frame, the node frame of
+// the pose graph [m].
+using PointCloud2 = std::vector<Eigen::Vector2f>;
+
+// The filtered range data of the given nodes; a node without data is absent.
+[[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
+    const std::string& path, const std::set<NodeId>& nodes,
+    const ProgressCallback& on_progress = {});
+
+// Copies `input` to `output` with the poses of submaps, nodes and landmarks and
+// the constraints of `pose_graph`; everything else is copied byte for byte.
+// Constraints that the input had and `pose_graph` still has (in order, at its
+// beginning) keep their stored 3D pose and unknown fields. Writes a temporary
+// file beside the output and renames it when it is whole; input and output may
+// be the same path.
+[[nodiscard]] absl::Status WriteMap(const std::string& input,
+                                    const std::string& output,
+                                    const PoseGraph& pose_graph,
+                                    const ProgressCallback& on_progress = {});
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_

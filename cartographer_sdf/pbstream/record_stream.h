@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The container of a .pbstream: an 8-byte magic number, then records, each an
+// 8-byte little-endian length and a gzip member of that length. Records are
+// handed over decompressed and undecoded.
+
+#ifndef CARTOGRAPHER_SDF_PBSTREAM_RECORD_STREAM_H_
+#define CARTOGRAPHER_SDF_PBSTREAM_RECORD_STREAM_H_
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace cartographer_sdf {
+
+class RecordReader {
+ public:
+  // Checks the magic number. Errors name the path.
+  [[nodiscard]] static absl::StatusOr<RecordReader> Open(
+      const std::string& path);
+
+  // Reads the next record; false at the end of the file, an error where the
+  // file is truncated or corrupted.
+  [[nodiscard]] absl::StatusOr<bool> Read(std::string* record);
+
+  // Bytes read and size of the file.
+  [[nodiscard]] int64_t position() const { return position_; }
+  [[nodiscard]] int64_t size() const { return size_; }
+
+ private:
+  RecordReader() = default;
+
+  std::string path_;
+  std::ifstream file_;
+  int64_t position_ = 0;
+  int64_t size_ = 0;
+};
+
+// Writes to a temporary file beside `path`; Commit() renames it. Destroyed
+// without a commit, it leaves nothing behind.
+class RecordWriter {
+ public:
+  [[nodiscard]] static absl::StatusOr<RecordWriter> Open(
+      const std::string& path);
+  RecordWriter(RecordWriter&& other) noexcept;
+  RecordWriter& operator=(RecordWriter&&) = delete;
+  ~RecordWriter();
+
+  [[nodiscard]] absl::Status Write(const std::string& record);
+  [[nodiscard]] absl::Status Commit();
+
+ private:
+  RecordWriter() = default;
+
+  std::string path_;
+  std::string temporary_path_;
+  std::ofstream file_;
+};
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_PBSTREAM_RECORD_STREAM_H_
