@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Signed distance field of a submap: metres to the nearest wall, positive
+// outside obstacles and negative inside, zero on the edges between occupied
+// and other cells ([Millane2019], Sec. IV-A). Exact for the thresholded grid
+// (at centres of cells; interpolated between them). Defined in unknown space
+// too, as the distance to the walls that are known, but `observed` tells that
+// nothing is known there.
+
+#ifndef CARTOGRAPHER_SDF_FIELD_DISTANCE_FIELD_H_
+#define CARTOGRAPHER_SDF_FIELD_DISTANCE_FIELD_H_
+
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "cartographer_sdf/grid/occupancy_grid.h"
+
+namespace cartographer_sdf {
+
+struct FieldOptions {
+  // A known cell with a higher probability is an obstacle. Cartographer's hits
+  // start at 0.55 and its misses at 0.49.
+  double occupied_probability = 0.5;
+  // The field reaches this far beyond the grid, so that keypoints and walls at
+  // its rim have surroundings [m].
+  double padding_meters = 0.6;
+};
+[[nodiscard]] std::string Validate(const FieldOptions& options);
+
+struct DistanceField {
+  // The grid's, larger by the padding.
+  CellGeometry geometry;
+  Eigen::ArrayXXf distance;  // [m]
+  BoolArray observed;
+};
+
+// None where no cell is occupied: such a submap is at no distance to anything.
+[[nodiscard]] std::optional<DistanceField> MakeDistanceField(
+    const FieldOptions& options, const OccupancyGrid& grid);
+
+// The same cells with `margin` unknown ones added on each side.
+[[nodiscard]] OccupancyGrid Pad(const OccupancyGrid& grid, int margin);
+
+struct FieldSample {
+  double distance;           // [m]
+  Eigen::Vector2d gradient;  // in the grid frame, dimensionless
+};
+
+// Bilinear interpolation at a point of the *grid* frame and its gradient; none
+// outside the centres of the outermost cells. Inline: the inner loop of
+// verification.
+[[nodiscard]] inline std::optional<FieldSample> SampleField(
+    const DistanceField& field, const Eigen::Vector2d& p_grid) {
+  const Eigen::Vector2d cells = field.geometry.GridToCells(p_grid);
+  const double fi = std::floor(cells.x()), fj = std::floor(cells.y());
+  if (!(fi >= 0. && fj >= 0. && fi + 1. < field.geometry.size.x() &&
+        fj + 1. < field.geometry.size.y())) {
+    return std::nullopt;
+  }
+  const Eigen::Index i = static_cast<Eigen::Index>(fi);
+  const Eigen::Index j = static_cast<Eigen::Index>(fj);
+  const double u = cells.x() - fi, v = cells.y() - fj;
+  const double f00 = field.distance(i, j), f10 = field.distance(i + 1, j);
+  const double f01 = field.distance(i, j + 1);
+  const double f11 = field.distance(i + 1, j + 1);
+  const double bottom = f00 + u * (f10 - f00), top = f01 + u * (f11 - f01);
+  const double along_x = (1. - v) * (f10 - f00) + v * (f11 - f01);
+  return FieldSample{
+      bottom + v * (top - bottom),
+      Eigen::Vector2d(along_x, top - bottom) / field.geometry.resolution};
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_FIELD_DISTANCE_FIELD_H_

@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Exact Euclidean distance transform in time linear in the number of cells,
+// as the lower envelope of parabolas, one axis after the other
+// ([Felzenszwalb2012], after [Maurer2003]); integers only, hence exact.
+
+#ifndef CARTOGRAPHER_SDF_FIELD_DISTANCE_TRANSFORM_H_
+#define CARTOGRAPHER_SDF_FIELD_DISTANCE_TRANSFORM_H_
+
+#include <Eigen/Core>
+
+#include "cartographer_sdf/grid/occupancy_grid.h"
+
+namespace cartographer_sdf {
+
+// Squared distance from each cell's centre to the nearest centre of a cell
+// that is true in `sites` [cells^2]. At least one cell must be true; at most
+// 32767 cells a side.
+[[nodiscard]] Eigen::ArrayXXi SquaredDistanceTransform(const BoolArray& sites);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_FIELD_DISTANCE_TRANSFORM_H_

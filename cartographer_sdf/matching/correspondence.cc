@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/matching/correspondence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+std::array<std::vector<int>, kNumKeypointKinds> IndicesByKind(
+    const FeatureSet& set) {
+  std::array<std::vector<int>, kNumKeypointKinds> indices;
+  for (size_t k = 0; k < set.features.size(); ++k) {
+    indices[static_cast<int>(set.features[k].keypoint.kind)].push_back(
+        static_cast<int>(k));
+  }
+  return indices;
+}
+
+Eigen::MatrixXf Select(const Eigen::MatrixXf& descriptors,
+                       const std::vector<int>& indices) {
+  Eigen::MatrixXf selected(descriptors.rows(),
+                           static_cast<Eigen::Index>(indices.size()));
+  for (size_t k = 0; k < indices.size(); ++k) {
+    selected.col(static_cast<Eigen::Index>(k)) = descriptors.col(indices[k]);
+  }
+  return selected;
+}
+
+// Squared distance and index, so that ties go to the lower index.
+using Neighbour = std::pair<float, int>;
+
+// The ratio test compares places, not directions: the rival must be another
+// keypoint.
+bool IsAmbiguous(const CorrespondenceOptions& options,
+                 const FeatureSet& reference,
+                 const std::vector<Neighbour>& nearest) {
+  if (nearest.empty()) return true;
+  const Eigen::Vector2d& best =
+      reference.features[nearest[0].second].keypoint.position;
+  for (const Neighbour& rival : nearest) {
+    if (reference.features[rival.second].keypoint.position == best) continue;
+    return std::sqrt(nearest[0].first) >
+           options.max_ratio * std::sqrt(rival.first);
+  }
+  // Nothing to be confused with, but nothing to be distinctive from either.
+  return true;
+}
+
+}  // namespace
+
+std::string Validate(const CorrespondenceOptions& options) {
+  if (options.num_neighbours < 1 || options.num_neighbours > 100) {
+    return "correspondence.num_neighbours must lie between 1 and 100";
+  }
+  if (!(options.max_ratio > 0. && options.max_ratio <= 1.)) {
+    return "correspondence.max_ratio must lie between 0 and 1";
+  }
+  if (!(options.max_clearance_difference_meters > 0.)) {
+    return "correspondence.max_clearance_difference_meters must be positive";
+  }
+  return "";
+}
+
+std::vector<Correspondence> FindCorrespondences(
+    const CorrespondenceOptions& options, const FeatureSet& reference,
+    const FeatureSet& query) {
+  CHECK_EQ(Validate(options), "");
+  std::vector<Correspondence> correspondences;
+  if (reference.features.empty() || query.features.empty()) return {};
+  CHECK_EQ(reference.descriptors.rows(), query.descriptors.rows());
+  const auto reference_indices = IndicesByKind(reference);
+  const auto query_indices = IndicesByKind(query);
+  // One more than asked for, as the ratio test needs a second.
+  const size_t num_nearest = static_cast<size_t>(options.num_neighbours) + 1;
+  for (int kind = 0; kind < kNumKeypointKinds; ++kind) {
+    const std::vector<int>& rows = reference_indices[kind];
+    if (rows.empty() || query_indices[kind].empty()) continue;
+    const Eigen::MatrixXf references = Select(reference.descriptors, rows);
+    const Eigen::MatrixXf queries =
+        Select(query.descriptors, query_indices[kind]);
+    const Eigen::VectorXf squared_norms = references.colwise().squaredNorm();
+    // |r - q|^2 without |q|^2, which is added to those that matter.
+    const Eigen::MatrixXf products = references.transpose() * queries;
+    std::vector<Neighbour> neighbours;
+    for (Eigen::Index k = 0; k < products.cols(); ++k) {
+      const int query_index = query_indices[kind][k];
+      const double clearance = query.features[query_index].keypoint.clearance;
+      const float squared_norm = queries.col(k).squaredNorm();
+      neighbours.clear();
+      for (Eigen::Index r = 0; r < products.rows(); ++r) {
+        if (std::abs(reference.features[rows[r]].keypoint.clearance -
+                     clearance) > options.max_clearance_difference_meters) {
+          continue;
+        }
+        neighbours.emplace_back(
+            std::max(0.f,
+                     squared_norms[r] - 2.f * products(r, k) + squared_norm),
+            rows[r]);
+      }
+      const size_t kept = std::min(num_nearest, neighbours.size());
+      std::partial_sort(neighbours.begin(), neighbours.begin() + kept,
+                        neighbours.end());
+      if (options.use_ratio_test &&
+          IsAmbiguous(options, reference,
+                      {neighbours.begin(), neighbours.begin() + kept})) {
+        continue;
+      }
+      const size_t proposed =
+          std::min(kept, static_cast<size_t>(options.num_neighbours));
+      for (size_t n = 0; n < proposed; ++n) {
+        correspondences.push_back({neighbours[n].second, query_index,
+                                   std::sqrt(neighbours[n].first)});
+      }
+    }
+  }
+  return correspondences;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Where does one place lie in another? Pairwise, without any pose prior.
+
+#ifndef CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
+#define CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/closure/loop_closure.h"
+#include "cartographer_sdf/matching/correspondence.h"
+#include "cartographer_sdf/matching/hypotheses.h"
+#include "cartographer_sdf/matching/ransac.h"
+#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/verification/verification.h"
+
+namespace cartographer_sdf {
+
+enum class Method {
+  // Many hypotheses, judged by walls and free space; score in log-odds.
+  kSdf,
+  // [Millane2019] as printed: ratio test, RANSAC, and the number of inliers as
+  // the score.
+  kPaper,
+};
+
+struct MatchOptions {
+  Method method = Method::kSdf;
+  CorrespondenceOptions correspondence;
+  HypothesisOptions hypotheses;
+  VerificationOptions verification;
+  // Correspondences nearer than this under the final pose are reported as
+  // inliers [m].
+  double inlier_distance_meters = 0.3;
+  // Only method kPaper.
+  RansacOptions ransac;
+  int min_num_inliers = 12;
+  int seed = 42;
+};
+[[nodiscard]] std::string Validate(const MatchOptions& options);
+
+// The paper's options: Table I, and our choice where it is silent.
+[[nodiscard]] PlaceOptions PaperPlaceOptions();
+[[nodiscard]] MatchOptions PaperMatchOptions();
+
+struct Match {
+  Verdict verdict;
+  LoopClosure closure;  // with score and evidence, accepted or not
+  // Pairs of keypoints (reference, query) that agree, each in its own frame.
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> inliers;
+  // Absent for method kPaper.
+  std::optional<Verification> verification;
+};
+
+// None where there is no pose worth reporting.
+[[nodiscard]] std::optional<Match> MatchPlaces(const MatchOptions& options,
+                                               const Place& reference,
+                                               const Place& query);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_

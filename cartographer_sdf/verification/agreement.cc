@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/agreement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cartographer_sdf {
+
+DirectedAgreement MeasureAgreement(const AgreementOptions& options,
+                                   const SurfaceModel& model,
+                                   const SurfaceModel& points,
+                                   const Rigid2& T_model_points,
+                                   const size_t max_num_points) {
+  const DistanceField& field = model.field;
+  const CellGeometry& geometry = field.geometry;
+  const Rigid2 T_grid_points =
+      geometry.T_submap_grid.Inverse() * T_model_points;
+  const Eigen::Matrix2d R = T_grid_points.RotationMatrix();
+  const float hit = static_cast<float>(options.hit_distance_meters);
+  const float contradiction =
+      static_cast<float>(options.contradiction_distance_meters);
+  DirectedAgreement result;
+  const size_t count = std::min(max_num_points, points.walls.size());
+  for (size_t k = 0; k < count; ++k) {
+    const SurfacePoint& wall = points.walls[k];
+    const Eigen::Vector2d p_grid =
+        R * wall.position + T_grid_points.translation();
+    const double x = std::floor(p_grid.x() / geometry.resolution);
+    const double y = std::floor(p_grid.y() / geometry.resolution);
+    if (!(x >= 0. && y >= 0. && x < geometry.size.x() &&
+          y < geometry.size.y())) {
+      continue;
+    }
+    const Eigen::Index i = static_cast<Eigen::Index>(x);
+    const Eigen::Index j = static_cast<Eigen::Index>(y);
+    const float distance = std::abs(field.distance(i, j));
+    // Walls border on the unknown, so a hit may well lie in it.
+    if (distance <= hit) {
+      result.num_points += wall.weight;
+      result.hits += wall.weight;
+      result.squared_distance += wall.weight * distance * distance;
+    } else if (field.observed(i, j)) {
+      result.num_points += wall.weight;
+      if (distance > contradiction) {
+        result.contradictions += wall.weight * model.free(i, j) / 255.;
+      }
+    }
+  }
+  return result;
+}
+
+double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
+                   const Rigid2& T_reference_query) {
+  const CellGeometry& geometry = reference.field.geometry;
+  const Rigid2 T_grid_query =
+      geometry.T_submap_grid.Inverse() * T_reference_query;
+  const Eigen::Matrix2d R = T_grid_query.RotationMatrix();
+  int count = 0;
+  for (const Eigen::Vector2d& point : query.observed_points) {
+    const Eigen::Array2i cell =
+        ((R * point + T_grid_query.translation()).array() / geometry.resolution)
+            .floor()
+            .cast<int>();
+    count +=
+        geometry.Contains(cell) && reference.field.observed(cell.x(), cell.y());
+  }
+  return count * query.area_per_observed_point;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/registration.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Fewer wall points than this fix no pose.
+constexpr double kMinSumOfWeights = 5.;
+// Steps below this change nothing that matters [m, rad].
+constexpr double kConverged = 1e-5;
+
+struct NormalEquations {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double sum_of_weights = 0.;
+
+  void Add(const double weight, const double residual,
+           const Eigen::Vector3d& jacobian) {
+    A.noalias() += weight * jacobian * jacobian.transpose();
+    b.noalias() -= weight * residual * jacobian;
+    sum_of_weights += weight;
+  }
+};
+
+double GemanMcClureWeight(const double residual, const double scale) {
+  const double ratio = 1. + residual * residual / (scale * scale);
+  return 1. / (ratio * ratio);
+}
+
+Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
+  return Eigen::Vector2d(-v.y(), v.x());
+}
+
+// The distance to the middle of a wall: a wall's cells are its points, and the
+// field is zero on their edge, half a cell away.
+double Residual(const DistanceField& field, const FieldSample& sample) {
+  return sample.distance + 0.5 * field.geometry.resolution;
+}
+
+// Points of the frame that moves, against a field that stands.
+void AddForward(const DistanceField& field,
+                const std::vector<SurfacePoint>& points, const size_t count,
+                const Rigid2& T_field_points, const double scale,
+                NormalEquations* const equations) {
+  const Rigid2 T_grid_points =
+      field.geometry.T_submap_grid.Inverse() * T_field_points;
+  const Eigen::Matrix2d R = T_grid_points.RotationMatrix();
+  const Eigen::Matrix2d R_field_grid =
+      field.geometry.T_submap_grid.RotationMatrix();
+  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
+  for (size_t k = 0; k < count; ++k) {
+    const std::optional<FieldSample> sample = SampleField(
+        field, R * points[k].position + T_grid_points.translation());
+    if (!sample) continue;
+    const double residual = Residual(field, *sample);
+    const Eigen::Vector2d gradient = R_field_grid * sample->gradient;
+    equations->Add(
+        points[k].weight * GemanMcClureWeight(residual, scale), residual,
+        {gradient.x(), gradient.y(),
+         gradient.dot(Perpendicular(R_field_points * points[k].position))});
+  }
+}
+
+// Points that stand, against a field of the frame that moves.
+void AddBackward(const DistanceField& field,
+                 const std::vector<SurfacePoint>& points, const size_t count,
+                 const Rigid2& T_points_field, const double scale,
+                 NormalEquations* const equations) {
+  const Rigid2 T_field_points = T_points_field.Inverse();
+  const Rigid2 T_grid_field = field.geometry.T_submap_grid.Inverse();
+  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
+  const Eigen::Matrix2d R_points_field = T_points_field.RotationMatrix();
+  const Eigen::Matrix2d R_grid_field = T_grid_field.RotationMatrix();
+  for (size_t k = 0; k < count; ++k) {
+    const Eigen::Vector2d p_field =
+        R_field_points * points[k].position + T_field_points.translation();
+    const std::optional<FieldSample> sample =
+        SampleField(field, R_grid_field * p_field + T_grid_field.translation());
+    if (!sample) continue;
+    const double residual = Residual(field, *sample);
+    const Eigen::Vector2d gradient =
+        R_grid_field.transpose() * sample->gradient;
+    const Eigen::Vector2d translation = -(R_points_field * gradient);
+    equations->Add(points[k].weight * GemanMcClureWeight(residual, scale),
+                   residual,
+                   {translation.x(), translation.y(),
+                    -gradient.dot(Perpendicular(p_field))});
+  }
+}
+
+template <typename AddResiduals>
+std::optional<Registration> GaussNewton(const RegistrationOptions& options,
+                                        const Rigid2& guess,
+                                        const AddResiduals& add_residuals) {
+  CHECK_EQ(Validate(options), "");
+  Rigid2 pose = guess;
+  const double shrink = options.num_iterations > 1
+                            ? std::pow(options.final_kernel_scale_meters /
+                                           options.initial_kernel_scale_meters,
+                                       1. / (options.num_iterations - 1))
+                            : 1.;
+  double scale = options.initial_kernel_scale_meters;
+  for (int k = 0; k < options.num_iterations; ++k, scale *= shrink) {
+    NormalEquations equations;
+    add_residuals(pose, scale, &equations);
+    if (equations.sum_of_weights < kMinSumOfWeights) return std::nullopt;
+    const Eigen::LDLT<Eigen::Matrix3d> solver(equations.A);
+    if (solver.info() != Eigen::Success || !solver.isPositive() ||
+        solver.rcond() < 1e-9) {
+      return std::nullopt;
+    }
+    const Eigen::Vector3d step = solver.solve(equations.b);
+    pose =
+        Rigid2(pose.translation() + step.head<2>(), pose.rotation() + step.z());
+    if (step.norm() < kConverged && scale == options.final_kernel_scale_meters)
+      break;
+  }
+  NormalEquations equations;
+  add_residuals(pose, options.final_kernel_scale_meters, &equations);
+  if (equations.sum_of_weights < kMinSumOfWeights) return std::nullopt;
+  const Eigen::Matrix2d scatter =
+      equations.A.topLeftCorner<2, 2>() / equations.sum_of_weights;
+  const double min_eigenvalue =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()[0];
+  return Registration{pose, equations.A, min_eigenvalue,
+                      equations.sum_of_weights};
+}
+
+size_t Count(const RegistrationOptions& options,
+             const std::vector<SurfacePoint>& points) {
+  return std::min(points.size(), static_cast<size_t>(options.max_num_points));
+}
+
+}  // namespace
+
+std::string Validate(const RegistrationOptions& options) {
+  if (options.num_iterations < 1 || options.num_iterations > 1000) {
+    return "registration.num_iterations must lie between 1 and 1000";
+  }
+  if (!(options.final_kernel_scale_meters > 0. &&
+        options.initial_kernel_scale_meters >=
+            options.final_kernel_scale_meters)) {
+    return "registration.final_kernel_scale_meters must be positive and not "
+           "above initial_kernel_scale_meters";
+  }
+  if (options.max_num_points < 10) {
+    return "registration.max_num_points must be at least 10";
+  }
+  return "";
+}
+
+std::optional<Registration> RegisterSubmaps(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const Rigid2& guess_T_reference_query) {
+  return GaussNewton(
+      options, guess_T_reference_query,
+      [&](const Rigid2& pose, const double scale,
+          NormalEquations* const equations) {
+        AddForward(reference.field, query.walls, Count(options, query.walls),
+                   pose, scale, equations);
+        AddBackward(query.field, reference.walls,
+                    Count(options, reference.walls), pose, scale, equations);
+      });
+}
+
+std::optional<Registration> RegisterPoints(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const std::vector<SurfacePoint>& points,
+    const Rigid2& guess_T_reference_points) {
+  return GaussNewton(options, guess_T_reference_points,
+                     [&](const Rigid2& pose, const double scale,
+                         NormalEquations* const equations) {
+                       AddForward(reference.field, points,
+                                  Count(options, points), pose, scale,
+                                  equations);
+                     });
+}
+
+}  // namespace cartographer_sdf

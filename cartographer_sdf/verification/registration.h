@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Point-to-field registration: Gauss-Newton on the distances of wall points to
+// the walls of a distance field, with analytic gradients and a robust kernel
+// that narrows (graduated non-convexity, [Yang2020]). Local: it needs a guess
+// within some 0.5 m and 6 degrees.
+
+#ifndef CARTOGRAPHER_SDF_VERIFICATION_REGISTRATION_H_
+#define CARTOGRAPHER_SDF_VERIFICATION_REGISTRATION_H_
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/verification/surface_model.h"
+
+namespace cartographer_sdf {
+
+struct RegistrationOptions {
+  int num_iterations = 12;
+  // Scale of the Geman-McClure kernel in the first and the last iteration [m].
+  double initial_kernel_scale_meters = 0.4;
+  double final_kernel_scale_meters = 0.15;
+  // Wall points used of each submap. Larger: more precise, slower.
+  int max_num_points = 300;
+};
+[[nodiscard]] std::string Validate(const RegistrationOptions& options);
+
+struct Registration {
+  Rigid2 T_reference_query;
+  // Sum of the robustly weighted outer products of the residuals' Jacobians in
+  // (x, y, yaw): the inverse covariance for residuals of unit variance. The
+  // pose is perturbed as translation in the reference frame, and rotation
+  // about the origin of the query frame.
+  Eigen::Matrix3d normal_matrix;
+  // The same for the translation alone and for weights that sum to one: the
+  // scatter of the normals of the walls that match. Its smaller eigenvalue is
+  // near 0 where one could slide along, 0.5 where walls face all ways.
+  double min_scatter_eigenvalue;
+  double sum_of_weights;
+};
+
+// Query walls to the reference's field and reference walls to the query's.
+// None where too few points fall into the other's field, or the normal
+// equations are singular.
+[[nodiscard]] std::optional<Registration> RegisterSubmaps(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const Rigid2& guess_T_reference_query);
+
+// Points of equal weight (a scan, in its node's frame) to the reference's
+// field.
+[[nodiscard]] std::optional<Registration> RegisterPoints(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const std::vector<SurfacePoint>& points,
+    const Rigid2& guess_T_reference_points);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_VERIFICATION_REGISTRATION_H_

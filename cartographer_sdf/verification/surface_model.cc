@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/surface_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+namespace cartographer_sdf {
+namespace {
+
+// Certainty grows linearly with the probability: a wall seen once (0.55) has a
+// weight of 0.28, one at 0.73 or more counts fully; free space seen once (0.49)
+// hardly counts, at 0.25 or less fully.
+constexpr float kWallOffset = 0.48f;
+constexpr float kFreeOffset = 0.5f;
+constexpr float kCertaintyRange = 0.25f;
+
+// About one observed point for each square of this side [m].
+constexpr double kObservedPointSpacing = 0.25;
+
+// Fisher-Yates with a fixed seed and draws of our own, as the standard's
+// shuffle differs between libraries.
+template <typename T>
+void Mix(std::vector<T>* const items) {
+  std::mt19937 generator(42);
+  for (size_t k = items->size(); k > 1; --k) {
+    const uint64_t other = (static_cast<uint64_t>(generator()) * k) >> 32;
+    std::swap((*items)[k - 1], (*items)[other]);
+  }
+}
+
+}  // namespace
+
+std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
+                                             const OccupancyGrid& grid) {
+  std::optional<DistanceField> field = MakeDistanceField(options, grid);
+  if (!field) return std::nullopt;
+  SurfaceModel model;
+  model.field = *std::move(field);
+  const CellGeometry& geometry = model.field.geometry;
+  model.free.setZero(geometry.size.x(), geometry.size.y());
+  const Eigen::Array2i margin = (geometry.size - grid.geometry.size) / 2;
+  const int stride =
+      std::max(1, static_cast<int>(std::lround(kObservedPointSpacing /
+                                               geometry.resolution)));
+  const float threshold = static_cast<float>(options.occupied_probability);
+  for (int j = 0; j < grid.geometry.size.y(); ++j) {
+    for (int i = 0; i < grid.geometry.size.x(); ++i) {
+      if (!grid.known(i, j)) continue;
+      const float probability = grid.probability(i, j);
+      if (probability > threshold) {
+        const float weight =
+            std::min((probability - kWallOffset) / kCertaintyRange, 1.f);
+        if (weight > 0.f) {
+          model.walls.push_back({grid.geometry.CellCentre({i, j}), weight});
+        }
+      } else {
+        const float certainty =
+            std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
+        model.free(i + margin.x(), j + margin.y()) =
+            static_cast<uint8_t>(std::lround(255.f * certainty));
+      }
+      if (i % stride == 0 && j % stride == 0) {
+        model.observed_points.push_back(grid.geometry.CellCentre({i, j}));
+      }
+    }
+  }
+  if (model.observed_points.empty() || model.walls.empty()) {
+    return std::nullopt;
+  }
+  model.area_per_observed_point = std::pow(stride * geometry.resolution, 2);
+  Mix(&model.walls);
+  Mix(&model.observed_points);
+  return model;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What verification needs of a submap: its distance field, how surely each cell
+// is free, and its walls as weighted points.
+
+#ifndef CARTOGRAPHER_SDF_VERIFICATION_SURFACE_MODEL_H_
+#define CARTOGRAPHER_SDF_VERIFICATION_SURFACE_MODEL_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cartographer_sdf/field/distance_field.h"
+
+namespace cartographer_sdf {
+
+struct SurfacePoint {
+  Eigen::Vector2d position;  // centre of an occupied cell, submap frame [m]
+  double weight;             // how surely it is occupied, in (0, 1]
+};
+
+struct SurfaceModel {
+  DistanceField field;
+  // How surely a cell is free, 0 (occupied or unknown) to 255; of the field's
+  // geometry.
+  Eigen::Array<uint8_t, Eigen::Dynamic, Eigen::Dynamic> free;
+  // In a fixed, well mixed order: the first n are a fair sample of all.
+  std::vector<SurfacePoint> walls;
+  // Centres of a fair sample of the observed cells, submap frame [m], and the
+  // area that each stands for [m^2].
+  std::vector<Eigen::Vector2d> observed_points;
+  double area_per_observed_point = 0.;
+};
+
+// None where the field has none (see MakeDistanceField) or nothing is observed.
+[[nodiscard]] std::optional<SurfaceModel> MakeSurfaceModel(
+    const FieldOptions& options, const OccupancyGrid& grid);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_VERIFICATION_SURFACE_MODEL_H_

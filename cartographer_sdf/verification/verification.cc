@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Poses nearer than this, at the middle of the overlap, are one answer.
+constexpr double kSameDistance = 0.3;
+constexpr double kSameRotation = 0.1;
+// Poses farther apart than this are rivals.
+constexpr double kDistinctDistance = 1.;
+constexpr double kDistinctRotation = 0.35;
+
+// Standard deviation of a wall point's distance, by the grid and by local SLAM
+// [m].
+constexpr double kResidualSigma = 0.05;
+
+// Each survivor is also tried turned by these before refinement: a hypothesis
+// from keypoints is off by some degrees, beyond the reach of Gauss-Newton at
+// the far ends of a submap [rad].
+constexpr double kPolishRotations[] = {0., -0.035, 0.035, -0.07, 0.07};
+
+constexpr size_t kAllPoints = std::numeric_limits<size_t>::max();
+
+double RankingScore(const RankingOptions& options,
+                    const SurfaceModel& reference, const SurfaceModel& query,
+                    const Rigid2& T_reference_query, const int num_points) {
+  const AgreementOptions tolerance{options.hit_distance_meters,
+                                   options.contradiction_distance_meters};
+  const DirectedAgreement forward = MeasureAgreement(
+      tolerance, reference, query, T_reference_query, num_points);
+  const DirectedAgreement backward = MeasureAgreement(
+      tolerance, query, reference, T_reference_query.Inverse(), num_points);
+  // Points that the other has not seen neither speak for nor against the pose,
+  // but a pose at which little is seen by both says little: a few more points
+  // in the denominator.
+  const double num_seen = forward.num_points + backward.num_points;
+  const double regularized = num_seen + 0.1 * num_points;
+  return (forward.hits + backward.hits -
+          options.contradiction_weight *
+              (forward.contradictions + backward.contradictions)) /
+         regularized;
+}
+
+struct Ranked {
+  double score;
+  size_t index;
+  Rigid2 T_reference_query;
+};
+
+bool IsNear(const Rigid2& a, const Rigid2& b, const Eigen::Vector2d& at,
+            const double distance, const double rotation) {
+  return (a * at - b * at).norm() < distance &&
+         std::abs(NormalizeAngle(a.rotation() - b.rotation())) < rotation;
+}
+
+// Best first; of those that are nearly the same pose, the best.
+std::vector<Ranked> KeepBest(std::vector<Ranked> ranked, const size_t count,
+                             const double min_score,
+                             const Eigen::Vector2d& middle) {
+  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+    return a.score != b.score ? a.score > b.score : a.index < b.index;
+  });
+  std::vector<Ranked> kept;
+  for (const Ranked& candidate : ranked) {
+    if (kept.size() >= count || candidate.score < min_score) break;
+    const bool is_new =
+        std::none_of(kept.begin(), kept.end(), [&](const Ranked& better) {
+          return IsNear(candidate.T_reference_query, better.T_reference_query,
+                        middle, kSameDistance, kSameRotation);
+        });
+    if (is_new) kept.push_back(candidate);
+  }
+  return kept;
+}
+
+Eigen::Vector2d Middle(const SurfaceModel& model) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : model.observed_points) sum += point;
+  return sum / static_cast<double>(model.observed_points.size());
+}
+
+Rigid2 TurnAbout(const Rigid2& T_reference_query, const Eigen::Vector2d& at,
+                 const double rotation) {
+  const double turned = T_reference_query.rotation() + rotation;
+  return Rigid2(T_reference_query * at - Eigen::Rotation2Dd(turned) * at,
+                turned);
+}
+
+std::vector<Ranked> RankHypotheses(const RankingOptions& options,
+                                   const SurfaceModel& reference,
+                                   const SurfaceModel& query,
+                                   const std::vector<Rigid2>& hypotheses,
+                                   const Eigen::Vector2d& middle) {
+  std::vector<Ranked> coarse;
+  for (size_t k = 0; k < hypotheses.size(); ++k) {
+    coarse.push_back({RankingScore(options, reference, query, hypotheses[k],
+                                   options.num_coarse_points),
+                      k, hypotheses[k]});
+  }
+  coarse = KeepBest(std::move(coarse), options.num_coarse_survivors,
+                    options.min_coarse_score, middle);
+  std::vector<Ranked> fine;
+  for (const Ranked& survivor : coarse) {
+    for (const double rotation : kPolishRotations) {
+      const Rigid2 turned =
+          TurnAbout(survivor.T_reference_query, middle, rotation);
+      fine.push_back({RankingScore(options, reference, query, turned,
+                                   options.num_fine_points),
+                      fine.size(), turned});
+    }
+  }
+  return KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
+                  middle);
+}
+
+// Log-odds of being right: a linear function of the terms. Provisional.
+double ScoreOf(const Agreement& agreement) {
+  const std::array<double, kNumScoreTerms> terms = ScoreTerms(agreement);
+  constexpr double kWeights[kNumScoreTerms] = {10., 10., -20., -20., 1., 0.5};
+  constexpr double kBias = -17.;
+  double score = kBias;
+  for (int k = 0; k < kNumScoreTerms; ++k) score += kWeights[k] * terms[k];
+  return score;
+}
+
+Verdict Judge(const VerificationOptions& options, const Agreement& agreement,
+              const double score) {
+  if (agreement.overlap_area < options.min_overlap_area) {
+    return Verdict::kTooLittleOverlap;
+  }
+  if (std::max(agreement.query_in_reference.ContradictionRatio(),
+               agreement.reference_in_query.ContradictionRatio()) >
+      options.max_contradiction_ratio) {
+    return Verdict::kContradicted;
+  }
+  if (score < options.min_score) return Verdict::kUnlikely;
+  if (agreement.min_scatter_eigenvalue < options.min_scatter_eigenvalue) {
+    return Verdict::kDegenerate;
+  }
+  return Verdict::kAccepted;
+}
+
+std::optional<Verification> Verify(const VerificationOptions& options,
+                                   const SurfaceModel& reference,
+                                   const SurfaceModel& query,
+                                   const Rigid2& guess_T_reference_query) {
+  const std::optional<Registration> registration = RegisterSubmaps(
+      options.registration, reference, query, guess_T_reference_query);
+  if (!registration) return std::nullopt;
+  const Rigid2& T_reference_query = registration->T_reference_query;
+  Agreement agreement;
+  agreement.query_in_reference = MeasureAgreement(
+      options.agreement, reference, query, T_reference_query, kAllPoints);
+  agreement.reference_in_query =
+      MeasureAgreement(options.agreement, query, reference,
+                       T_reference_query.Inverse(), kAllPoints);
+  agreement.overlap_area = OverlapArea(reference, query, T_reference_query);
+  const double smaller_area =
+      std::min(static_cast<double>(reference.observed_points.size()) *
+                   reference.area_per_observed_point,
+               static_cast<double>(query.observed_points.size()) *
+                   query.area_per_observed_point);
+  agreement.overlap = std::min(1., agreement.overlap_area / smaller_area);
+  agreement.min_scatter_eigenvalue = registration->min_scatter_eigenvalue;
+  const double score = ScoreOf(agreement);
+  return Verification{
+      Judge(options, agreement, score),
+      T_reference_query,
+      registration->normal_matrix / (kResidualSigma * kResidualSigma),
+      score,
+      agreement,
+      std::nullopt};
+}
+
+}  // namespace
+
+const char* VerdictName(const Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return "accepted";
+    case Verdict::kTooLittleOverlap:
+      return "too_little_overlap";
+    case Verdict::kContradicted:
+      return "contradicted";
+    case Verdict::kUnlikely:
+      return "unlikely";
+    case Verdict::kDegenerate:
+      return "degenerate";
+    case Verdict::kAmbiguous:
+      return "ambiguous";
+  }
+  LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
+}
+
+std::string Validate(const VerificationOptions& options) {
+  const RankingOptions& ranking = options.ranking;
+  if (ranking.num_coarse_points < 1 || ranking.num_fine_points < 1 ||
+      ranking.num_coarse_survivors < 1 || ranking.num_refined < 1) {
+    return "verification.ranking: numbers must be positive";
+  }
+  if (!(ranking.hit_distance_meters > 0. &&
+        ranking.contradiction_distance_meters >= ranking.hit_distance_meters &&
+        ranking.contradiction_weight >= 0.)) {
+    return "verification.ranking: distances must be positive, that of a "
+           "contradiction not below that of a hit, and its weight not negative";
+  }
+  if (!(options.agreement.hit_distance_meters > 0. &&
+        options.agreement.contradiction_distance_meters >=
+            options.agreement.hit_distance_meters)) {
+    return "verification.agreement: distances must be positive, and that of a "
+           "contradiction not below that of a hit";
+  }
+  if (!(options.min_overlap_area >= 0. &&
+        options.max_contradiction_ratio >= 0. &&
+        options.min_scatter_eigenvalue >= 0. &&
+        options.min_score_margin >= 0.)) {
+    return "verification: thresholds must not be negative";
+  }
+  return Validate(options.registration);
+}
+
+std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement) {
+  const DirectedAgreement& a = agreement.query_in_reference;
+  const DirectedAgreement& b = agreement.reference_in_query;
+  return {0.5 * (a.HitRatio() + b.HitRatio()),
+          std::min(a.HitRatio(), b.HitRatio()),
+          0.5 * (a.ContradictionRatio() + b.ContradictionRatio()),
+          std::max(a.ContradictionRatio(), b.ContradictionRatio()),
+          std::log(1. + agreement.overlap_area),
+          std::log(1. + a.num_points + b.num_points)};
+}
+
+std::optional<Verification> VerifyHypotheses(
+    const VerificationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const std::vector<Rigid2>& hypotheses) {
+  CHECK_EQ(Validate(options), "");
+  const Eigen::Vector2d middle = Middle(query);
+  std::vector<Verification> verified;
+  for (const Ranked& ranked :
+       RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
+    std::optional<Verification> verification =
+        Verify(options, reference, query, ranked.T_reference_query);
+    if (verification) verified.push_back(*std::move(verification));
+  }
+  if (verified.empty()) return std::nullopt;
+  Verification best =
+      *std::max_element(verified.begin(), verified.end(),
+                        [](const Verification& a, const Verification& b) {
+                          return a.score < b.score;
+                        });
+  for (const Verification& rival : verified) {
+    if (IsNear(rival.T_reference_query, best.T_reference_query, middle,
+               kDistinctDistance, kDistinctRotation)) {
+      continue;
+    }
+    best.runner_up_score =
+        std::max(rival.score, best.runner_up_score.value_or(rival.score));
+  }
+  if (best.verdict == Verdict::kAccepted && best.runner_up_score &&
+      *best.runner_up_score > best.score - options.min_score_margin) {
+    best.verdict = Verdict::kAmbiguous;
+  }
+  return best;
+}
+
+}  // namespace cartographer_sdf

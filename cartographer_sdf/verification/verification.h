@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Decides whether a query submap lies in a reference submap as a hypothesis
+// says: the few best of many hypotheses by their agreement of walls and free
+// space, refined on the distance fields, and judged. A refusal has its reason.
+
+#ifndef CARTOGRAPHER_SDF_VERIFICATION_VERIFICATION_H_
+#define CARTOGRAPHER_SDF_VERIFICATION_VERIFICATION_H_
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/verification/agreement.h"
+#include "cartographer_sdf/verification/registration.h"
+#include "cartographer_sdf/verification/surface_model.h"
+
+namespace cartographer_sdf {
+
+enum class Verdict {
+  kAccepted,
+  kTooLittleOverlap,  // next to nothing was seen by both
+  kContradicted,      // walls of one stand in free space of the other
+  kUnlikely,          // too little agrees
+  kDegenerate,        // walls face one way: one could slide along a corridor
+  kAmbiguous,         // another pose is as good
+};
+// "accepted", "too_little_overlap", ...
+[[nodiscard]] const char* VerdictName(Verdict verdict);
+
+// Coarse to fine: all hypotheses on few points, the survivors on more.
+struct RankingOptions {
+  int num_coarse_points = 40;
+  int num_fine_points = 150;
+  // Hypotheses that reach the fine ranking, and those that are refined.
+  int num_coarse_survivors = 20;
+  int num_refined = 5;
+  // The tolerance of both: hypotheses are this wrong [m].
+  double hit_distance_meters = 0.3;
+  double contradiction_distance_meters = 0.5;
+  // Contradictions count so many times as much as hits.
+  double contradiction_weight = 2.;
+  // A hypothesis with a lower (hits - weight * contradictions) / points is
+  // dropped. Larger: faster, less recall.
+  double min_coarse_score = 0.1;
+  double min_fine_score = 0.2;
+};
+
+struct VerificationOptions {
+  RankingOptions ranking;
+  RegistrationOptions registration;
+  AgreementOptions agreement;
+  // Least area seen by both [m^2].
+  double min_overlap_area = 10.;
+  // Largest ratio of contradicting wall points, the worse of both directions.
+  double max_contradiction_ratio = 0.10;
+  // Least smaller eigenvalue of the scatter of wall normals, in [0, 0.5].
+  double min_scatter_eigenvalue = 0.03;
+  // Least score; log-odds of being right.
+  double min_score = 3.;
+  // A distinct pose (1 m or 20 degrees away) whose score comes nearer than this
+  // makes the pair ambiguous.
+  double min_score_margin = 2.;
+};
+[[nodiscard]] std::string Validate(const VerificationOptions& options);
+
+// What the score is made of; see ScoreOf in the source.
+struct Agreement {
+  DirectedAgreement query_in_reference;
+  DirectedAgreement reference_in_query;
+  double overlap_area = 0.;  // [m^2]
+  double overlap = 0.;       // of the smaller observed area
+  double min_scatter_eigenvalue = 0.;
+};
+// Mean and least hit ratio, mean and largest contradiction ratio of both
+// directions, log of the area [m^2], log of the number of points.
+constexpr int kNumScoreTerms = 6;
+[[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
+    const Agreement& agreement);
+
+struct Verification {
+  Verdict verdict;
+  Rigid2 T_reference_query;  // refined
+  // Inverse covariance of T_reference_query, perturbed as Registration's.
+  Eigen::Matrix3d information;
+  double score;  // log-odds of being right
+  Agreement agreement;
+  // Score of the best distinct pose, if one was found.
+  std::optional<double> runner_up_score;
+};
+
+// None where no hypothesis is worth refining.
+[[nodiscard]] std::optional<Verification> VerifyHypotheses(
+    const VerificationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query,
+    const std::vector<Rigid2>& hypotheses_T_reference_query);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_VERIFICATION_VERIFICATION_H_
