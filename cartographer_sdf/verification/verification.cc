@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "glog/logging.h"
@@ -27,9 +26,7 @@ constexpr double kResidualSigma = 0.05;
 // Each survivor is also tried turned by these before refinement: a hypothesis
 // from keypoints is off by some degrees, beyond the reach of Gauss-Newton at
 // the far ends of a submap [rad].
-constexpr double kPolishRotations[] = {0., -0.035, 0.035, -0.07, 0.07};
-
-constexpr size_t kAllPoints = std::numeric_limits<size_t>::max();
+constexpr double kPolishRotations[] = {-0.035, 0.035, -0.07, 0.07};
 
 double RankingScore(const RankingOptions& options,
                     const SurfaceModel& reference, const SurfaceModel& query,
@@ -110,31 +107,27 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
   coarse = KeepBest(std::move(coarse), options.num_coarse_survivors,
                     options.min_coarse_score, middle);
   std::vector<Ranked> fine;
-  for (const Ranked& survivor : coarse) {
+  const auto rank_fine = [&](const Rigid2& T_reference_query) {
+    fine.push_back({RankingScore(options, reference, query, T_reference_query,
+                                 options.num_fine_points),
+                    fine.size(), T_reference_query});
+  };
+  for (const Ranked& survivor : coarse) rank_fine(survivor.T_reference_query);
+  fine = KeepBest(std::move(fine), options.num_refined,
+                  options.min_coarse_score, middle);
+  const std::vector<Ranked> unpolished = fine;
+  for (const Ranked& survivor : unpolished) {
     for (const double rotation : kPolishRotations) {
-      const Rigid2 turned =
-          TurnAbout(survivor.T_reference_query, middle, rotation);
-      fine.push_back({RankingScore(options, reference, query, turned,
-                                   options.num_fine_points),
-                      fine.size(), turned});
+      rank_fine(TurnAbout(survivor.T_reference_query, middle, rotation));
     }
   }
   return KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
                   middle);
 }
 
-// Log-odds of being right: a linear function of the terms. Provisional.
-double ScoreOf(const Agreement& agreement) {
-  const std::array<double, kNumScoreTerms> terms = ScoreTerms(agreement);
-  constexpr double kWeights[kNumScoreTerms] = {10., 10., -20., -20., 1., 0.5};
-  constexpr double kBias = -17.;
-  double score = kBias;
-  for (int k = 0; k < kNumScoreTerms; ++k) score += kWeights[k] * terms[k];
-  return score;
-}
-
-Verdict Judge(const VerificationOptions& options, const Agreement& agreement,
-              const double score) {
+Verdict Judge(const VerificationOptions& options,
+              const Verification& verification) {
+  const Agreement& agreement = verification.agreement;
   if (agreement.overlap_area < options.min_overlap_area) {
     return Verdict::kTooLittleOverlap;
   }
@@ -143,27 +136,35 @@ Verdict Judge(const VerificationOptions& options, const Agreement& agreement,
       options.max_contradiction_ratio) {
     return Verdict::kContradicted;
   }
-  if (score < options.min_score) return Verdict::kUnlikely;
   if (agreement.min_scatter_eigenvalue < options.min_scatter_eigenvalue) {
     return Verdict::kDegenerate;
   }
+  if (verification.margin < options.min_margin) return Verdict::kAmbiguous;
+  if (verification.score < options.min_score) return Verdict::kUnlikely;
   return Verdict::kAccepted;
 }
 
-std::optional<Verification> Verify(const VerificationOptions& options,
-                                   const SurfaceModel& reference,
-                                   const SurfaceModel& query,
-                                   const Rigid2& guess_T_reference_query) {
-  const std::optional<Registration> registration = RegisterSubmaps(
+// A refined pose and how well it agrees, not yet judged.
+struct Candidate {
+  Registration registration;
+  Agreement agreement;
+};
+
+std::optional<Candidate> Refine(const VerificationOptions& options,
+                                const SurfaceModel& reference,
+                                const SurfaceModel& query,
+                                const Rigid2& guess_T_reference_query) {
+  std::optional<Registration> registration = RegisterSubmaps(
       options.registration, reference, query, guess_T_reference_query);
   if (!registration) return std::nullopt;
   const Rigid2& T_reference_query = registration->T_reference_query;
   Agreement agreement;
-  agreement.query_in_reference = MeasureAgreement(
-      options.agreement, reference, query, T_reference_query, kAllPoints);
-  agreement.reference_in_query =
-      MeasureAgreement(options.agreement, query, reference,
-                       T_reference_query.Inverse(), kAllPoints);
+  agreement.query_in_reference =
+      MeasureAgreement(options.agreement, reference, query, T_reference_query,
+                       options.num_agreement_points);
+  agreement.reference_in_query = MeasureAgreement(
+      options.agreement, query, reference, T_reference_query.Inverse(),
+      options.num_agreement_points);
   agreement.overlap_area = OverlapArea(reference, query, T_reference_query);
   const double smaller_area =
       std::min(static_cast<double>(reference.observed_points.size()) *
@@ -172,14 +173,22 @@ std::optional<Verification> Verify(const VerificationOptions& options,
                    query.area_per_observed_point);
   agreement.overlap = std::min(1., agreement.overlap_area / smaller_area);
   agreement.min_scatter_eigenvalue = registration->min_scatter_eigenvalue;
-  const double score = ScoreOf(agreement);
-  return Verification{
-      Judge(options, agreement, score),
-      T_reference_query,
-      registration->normal_matrix / (kResidualSigma * kResidualSigma),
-      score,
-      agreement,
-      std::nullopt};
+  return Candidate{*std::move(registration), agreement};
+}
+
+double MarginOf(const std::vector<Candidate>& candidates, const Candidate& best,
+                const Eigen::Vector2d& middle) {
+  double margin = kMaxMargin;
+  for (const Candidate& rival : candidates) {
+    if (IsNear(rival.registration.T_reference_query,
+               best.registration.T_reference_query, middle, kDistinctDistance,
+               kDistinctRotation)) {
+      continue;
+    }
+    margin =
+        std::min(margin, best.agreement.Quality() - rival.agreement.Quality());
+  }
+  return std::max(margin, 0.);
 }
 
 }  // namespace
@@ -204,9 +213,10 @@ const char* VerdictName(const Verdict verdict) {
 
 std::string Validate(const VerificationOptions& options) {
   const RankingOptions& ranking = options.ranking;
-  if (ranking.num_coarse_points < 1 || ranking.num_fine_points < 1 ||
-      ranking.num_coarse_survivors < 1 || ranking.num_refined < 1) {
-    return "verification.ranking: numbers must be positive";
+  if (options.num_agreement_points < 1 || ranking.num_coarse_points < 1 ||
+      ranking.num_fine_points < 1 || ranking.num_coarse_survivors < 1 ||
+      ranking.num_refined < 1) {
+    return "verification: numbers must be positive";
   }
   if (!(ranking.hit_distance_meters > 0. &&
         ranking.contradiction_distance_meters >= ranking.hit_distance_meters &&
@@ -222,14 +232,22 @@ std::string Validate(const VerificationOptions& options) {
   }
   if (!(options.min_overlap_area >= 0. &&
         options.max_contradiction_ratio >= 0. &&
-        options.min_scatter_eigenvalue >= 0. &&
-        options.min_score_margin >= 0.)) {
+        options.min_scatter_eigenvalue >= 0. && options.min_margin >= 0.)) {
     return "verification: thresholds must not be negative";
   }
   return Validate(options.registration);
 }
 
-std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement) {
+double Agreement::Quality() const {
+  constexpr double kPerLogArea = 0.07;
+  return 0.5 * (query_in_reference.HitRatio() + reference_in_query.HitRatio()) -
+         query_in_reference.ContradictionRatio() -
+         reference_in_query.ContradictionRatio() +
+         kPerLogArea * std::log(1. + overlap_area);
+}
+
+std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement,
+                                              const double margin) {
   const DirectedAgreement& a = agreement.query_in_reference;
   const DirectedAgreement& b = agreement.reference_in_query;
   return {0.5 * (a.HitRatio() + b.HitRatio()),
@@ -237,7 +255,23 @@ std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement) {
           0.5 * (a.ContradictionRatio() + b.ContradictionRatio()),
           std::max(a.ContradictionRatio(), b.ContradictionRatio()),
           std::log(1. + agreement.overlap_area),
-          std::log(1. + a.num_points + b.num_points)};
+          std::log(0.05 + agreement.overlap),
+          std::sqrt(std::max(agreement.min_scatter_eigenvalue, 0.)),
+          margin};
+}
+
+double Score(const ScoreWeights& weights, const Agreement& agreement,
+             const double margin) {
+  const std::array<double, kNumScoreTerms> terms =
+      ScoreTerms(agreement, margin);
+  const std::array<double, kNumScoreTerms> factors = {
+      weights.mean_hit_ratio,           weights.min_hit_ratio,
+      weights.mean_contradiction_ratio, weights.max_contradiction_ratio,
+      weights.log_overlap_area,         weights.log_overlap,
+      weights.sqrt_scatter_eigenvalue,  weights.margin};
+  double score = weights.bias;
+  for (int k = 0; k < kNumScoreTerms; ++k) score += factors[k] * terms[k];
+  return score;
 }
 
 std::optional<Verification> VerifyHypotheses(
@@ -245,32 +279,30 @@ std::optional<Verification> VerifyHypotheses(
     const SurfaceModel& query, const std::vector<Rigid2>& hypotheses) {
   CHECK_EQ(Validate(options), "");
   const Eigen::Vector2d middle = Middle(query);
-  std::vector<Verification> verified;
+  std::vector<Candidate> candidates;
   for (const Ranked& ranked :
        RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
-    std::optional<Verification> verification =
-        Verify(options, reference, query, ranked.T_reference_query);
-    if (verification) verified.push_back(*std::move(verification));
+    std::optional<Candidate> candidate =
+        Refine(options, reference, query, ranked.T_reference_query);
+    if (candidate) candidates.push_back(*std::move(candidate));
   }
-  if (verified.empty()) return std::nullopt;
-  Verification best =
-      *std::max_element(verified.begin(), verified.end(),
-                        [](const Verification& a, const Verification& b) {
-                          return a.score < b.score;
+  if (candidates.empty()) return std::nullopt;
+  // The first of equal ones.
+  const Candidate& best =
+      *std::max_element(candidates.begin(), candidates.end(),
+                        [](const Candidate& a, const Candidate& b) {
+                          return a.agreement.Quality() < b.agreement.Quality();
                         });
-  for (const Verification& rival : verified) {
-    if (IsNear(rival.T_reference_query, best.T_reference_query, middle,
-               kDistinctDistance, kDistinctRotation)) {
-      continue;
-    }
-    best.runner_up_score =
-        std::max(rival.score, best.runner_up_score.value_or(rival.score));
-  }
-  if (best.verdict == Verdict::kAccepted && best.runner_up_score &&
-      *best.runner_up_score > best.score - options.min_score_margin) {
-    best.verdict = Verdict::kAmbiguous;
-  }
-  return best;
+  Verification verification;
+  verification.T_reference_query = best.registration.T_reference_query;
+  verification.information =
+      best.registration.normal_matrix / (kResidualSigma * kResidualSigma);
+  verification.agreement = best.agreement;
+  verification.margin = MarginOf(candidates, best, middle);
+  verification.score =
+      Score(options.score_weights, best.agreement, verification.margin);
+  verification.verdict = Judge(options, verification);
+  return verification;
 }
 
 }  // namespace cartographer_sdf

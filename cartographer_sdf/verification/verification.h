@@ -46,14 +46,32 @@ struct RankingOptions {
   double contradiction_weight = 2.;
   // A hypothesis with a lower (hits - weight * contradictions) / points is
   // dropped. Larger: faster, less recall.
-  double min_coarse_score = 0.1;
-  double min_fine_score = 0.2;
+  double min_coarse_score = 0.3;
+  double min_fine_score = 0.45;
+};
+
+// The score, log-odds of being right, is linear in these terms. The weights are
+// learned by logistic regression (scripts/learn_score.py) on pairs of submaps
+// of several buildings; see docs/results.
+struct ScoreWeights {
+  double mean_hit_ratio = 0.;
+  double min_hit_ratio = 0.;  // of the two directions
+  double mean_contradiction_ratio = 0.;
+  double max_contradiction_ratio = 0.;
+  double log_overlap_area = 0.;  // ln(1 + m^2)
+  double log_overlap = 0.;       // ln(0.05 + fraction of the smaller area)
+  double sqrt_scatter_eigenvalue = 0.;
+  double margin = 0.;  // of quality to the best distinct pose, capped
+  double bias = 0.;
 };
 
 struct VerificationOptions {
   RankingOptions ranking;
   RegistrationOptions registration;
   AgreementOptions agreement;
+  // Wall points of each submap on which the final agreement is measured.
+  int num_agreement_points = 1000;
+  ScoreWeights score_weights;
   // Least area seen by both [m^2].
   double min_overlap_area = 10.;
   // Largest ratio of contradicting wall points, the worse of both directions.
@@ -62,25 +80,33 @@ struct VerificationOptions {
   double min_scatter_eigenvalue = 0.03;
   // Least score; log-odds of being right.
   double min_score = 3.;
-  // A distinct pose (1 m or 20 degrees away) whose score comes nearer than this
-  // makes the pair ambiguous.
-  double min_score_margin = 2.;
+  // A distinct pose (1 m or 20 degrees away) whose quality comes nearer than
+  // this makes the pair ambiguous.
+  double min_margin = 0.05;
 };
 [[nodiscard]] std::string Validate(const VerificationOptions& options);
 
-// What the score is made of; see ScoreOf in the source.
 struct Agreement {
   DirectedAgreement query_in_reference;
   DirectedAgreement reference_in_query;
   double overlap_area = 0.;  // [m^2]
   double overlap = 0.;       // of the smaller observed area
   double min_scatter_eigenvalue = 0.;
+  // Mean hit ratio less both contradiction ratios: how good a pose is beside
+  // others of the same pair. At most 1.
+  [[nodiscard]] double Quality() const;
 };
-// Mean and least hit ratio, mean and largest contradiction ratio of both
-// directions, log of the area [m^2], log of the number of points.
-constexpr int kNumScoreTerms = 6;
+
+// By how much a pose is better than the best distinct one; this where there is
+// none, or none near.
+constexpr double kMaxMargin = 0.25;
+
+// The terms of ScoreWeights without the bias, in their order.
+constexpr int kNumScoreTerms = 8;
 [[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
-    const Agreement& agreement);
+    const Agreement& agreement, double margin);
+[[nodiscard]] double Score(const ScoreWeights& weights,
+                           const Agreement& agreement, double margin);
 
 struct Verification {
   Verdict verdict;
@@ -89,8 +115,8 @@ struct Verification {
   Eigen::Matrix3d information;
   double score;  // log-odds of being right
   Agreement agreement;
-  // Score of the best distinct pose, if one was found.
-  std::optional<double> runner_up_score;
+  // Of quality, to the best distinct pose; in [0, kMaxMargin].
+  double margin;
 };
 
 // None where no hypothesis is worth refining.
