@@ -171,7 +171,7 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
   return absl::OkStatus();
 }
 
-absl::Status RecordReader::Corrupted(const std::string& problem) const {
+absl::Status RecordReader::Corrupted(const absl::string_view problem) const {
   return absl::DataLossError(absl::StrCat(path_, " is corrupted: record ",
                                           num_records_, " ", problem));
 }

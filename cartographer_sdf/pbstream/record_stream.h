@@ -14,6 +14,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 
 namespace cartographer_sdf {
 
@@ -31,9 +32,10 @@ class RecordReader {
   // Bytes read and size of the file.
   [[nodiscard]] int64_t position() const { return position_; }
   [[nodiscard]] int64_t size() const { return size_; }
-  // Records read; the last one read has this number, counted from 1.
-  [[nodiscard]] int num_records() const { return num_records_; }
   [[nodiscard]] const std::string& path() const { return path_; }
+  // The error that the record read last, counted from 1, has a problem:
+  // "PATH is corrupted: record 17 PROBLEM".
+  [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const;
 
  private:
   RecordReader() = default;
@@ -41,7 +43,6 @@ class RecordReader {
   [[nodiscard]] absl::Status ReadBytes(int64_t count, char* bytes);
   [[nodiscard]] absl::Status Inflate(int64_t compressed_size,
                                      std::string* record);
-  [[nodiscard]] absl::Status Corrupted(const std::string& problem) const;
 
   std::string path_;
   std::ifstream file_;
