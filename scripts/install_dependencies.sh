@@ -42,15 +42,16 @@ done
 command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
   fail "needs Debian's package manager; elsewhere install by hand: ${PACKAGES[*]}"
 
-# Prints those of PACKAGES that are not installed.
+# Prints those of PACKAGES that are not installed, in one line.
 missing_packages() {
-  local package
+  local package missing=()
   for package in "${PACKAGES[@]}"; do
     # One line for each installed architecture.
     dpkg-query -W -f='${db:Status-Status}\n' "${package}" 2>/dev/null |
       grep -x installed >/dev/null ||
-      echo "${package}"
+      missing+=("${package}")
   done
+  echo "${missing[*]}"
 }
 
 as_root() {
@@ -74,7 +75,7 @@ all_available() {
   done
 }
 
-mapfile -t missing < <(missing_packages)
+read -r -a missing <<<"$(missing_packages)"
 if ((${#missing[@]} == 0)); then
   echo "All ${#PACKAGES[@]} packages are installed."
   exit 0
@@ -94,6 +95,6 @@ if ! apt_get install -y --no-install-recommends "${missing[@]}"; then
     fail "could not install: ${missing[*]}"
 fi
 
-mapfile -t missing < <(missing_packages)
+read -r -a missing <<<"$(missing_packages)"
 ((${#missing[@]} == 0)) || fail "still not installed: ${missing[*]}"
 echo "All ${#PACKAGES[@]} packages are installed."

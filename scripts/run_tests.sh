@@ -74,10 +74,11 @@ report_skipped_tests() {
       next
     }
     in_reason { reason = reason $0 }
+    function tests(n) { return n (n == 1 ? " test" : " tests") }
     END {
-      if (num_absent) print num_absent " tests skipped: real maps absent"
+      if (num_absent) print tests(num_absent) " skipped: real maps absent"
       for (i = 1; i <= num_absent; ++i) print "  " absent[i]
-      if (num_other) print num_other " tests skipped for other reasons"
+      if (num_other) print tests(num_other) " skipped for other reasons"
       for (i = 1; i <= num_other; ++i) print "  " other[i]
     }' "${BUILD_DIR}/Testing/Temporary/LastTest.log"
 }
@@ -102,6 +103,8 @@ ctest --test-dir "${BUILD_DIR}" --output-on-failure --no-tests=error \
 
 if "${benchmark}"; then
   for program in "${BUILD_DIR}"/test/benchmark/*_benchmark; do
+    echo
+    echo "=== ${program##*/}"
     "${program}"
   done
 fi
