@@ -32,7 +32,7 @@ CORE = {
 OFFLINE = {
     "pose_graph": ["geometry", "grid", "closure"],
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
-    "config": [*CORE, "pose_graph"],
+    "config": [*CORE, "pose_graph", "report/report_options.h"],
     "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream"],
     "evaluation": [*CORE, "pose_graph", "pbstream"],
     "report": [*CORE, "pose_graph", "pbstream", "evaluation"],

@@ -39,8 +39,9 @@ while (($# > 0)); do
   shift
 done
 
-command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
+if ! command -v apt-get >/dev/null; then
   fail "needs Debian's package manager; elsewhere install by hand: ${PACKAGES[*]}"
+fi
 
 # Prints those of PACKAGES that are not installed, in one line.
 missing_packages() {

@@ -45,7 +45,7 @@ if "${sanitize}"; then
   options+=(
     -DCMAKE_BUILD_TYPE=RelWithDebInfo
     "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1"
-    -DCARTOGRAPHER_SDF_SANITIZE=address,undefined
+    "-DCARTOGRAPHER_SDF_SANITIZE=address,undefined"
     -DCARTOGRAPHER_SDF_TEST_DATA_DIRECTORY=none
   )
   export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_stack_use_after_return=1}"
