@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+# SPDX-License-Identifier: Apache-2.0
+
+# Installs the Debian 12 packages that building and testing need, as root or
+# with sudo. Asks the package manager for nothing where they are all there.
+
+set -euo pipefail
+
+usage() {
+  cat <<END
+usage: scripts/install_dependencies.sh [--development]
+  --development  also what the static checks need (clang-format, clang-tidy)
+END
+}
+
+PACKAGES=(
+  # Tools.
+  cmake g++ ninja-build pkg-config protobuf-compiler python3
+  # Libraries, in the order of CMakeLists.txt.
+  libeigen3-dev libgoogle-glog-dev libgflags-dev libabsl-dev libceres-dev
+  libprotobuf-dev zlib1g-dev liblua5.2-dev libcairo2-dev
+  # Tests and benchmarks.
+  libgtest-dev libgmock-dev libbenchmark-dev
+)
+DEVELOPMENT_PACKAGES=(clang-format clang-tidy git)
+
+fail() {
+  echo "install_dependencies.sh: $*" >&2
+  exit 1
+}
+
+while (($# > 0)); do
+  case "$1" in
+    --development) PACKAGES+=("${DEVELOPMENT_PACKAGES[@]}") ;;
+    -h | --help) usage && exit 0 ;;
+    *) usage >&2 && exit 2 ;;
+  esac
+  shift
+done
+
+if ! command -v apt-get >/dev/null; then
+  fail "needs Debian's package manager; elsewhere install by hand: ${PACKAGES[*]}"
+fi
+
+# Prints those of PACKAGES that are not installed, in one line.
+missing_packages() {
+  local package missing=()
+  for package in "${PACKAGES[@]}"; do
+    # One line for each installed architecture.
+    dpkg-query -W -f='${db:Status-Status}\n' "${package}" 2>/dev/null |
+      grep -x installed >/dev/null ||
+      missing+=("${package}")
+  done
+  echo "${missing[*]}"
+}
+
+as_root() {
+  if ((EUID == 0)); then
+    "$@"
+  else
+    sudo "$@"
+  fi
+}
+
+apt_get() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get \
+    -o DPkg::Lock::Timeout=300 "$@" </dev/null
+}
+
+# Whether the package manager knows where to get each of the given packages.
+all_available() {
+  local package
+  for package in "$@"; do
+    apt-cache show "${package}" >/dev/null 2>&1 || return 1
+  done
+}
+
+read -r -a missing <<<"$(missing_packages)"
+if ((${#missing[@]} == 0)); then
+  echo "All ${#PACKAGES[@]} packages are installed."
+  exit 0
+fi
+
+((EUID == 0)) || command -v sudo >/dev/null ||
+  fail "needs root or sudo to install: ${missing[*]}"
+
+echo "Installing: ${missing[*]}"
+all_available "${missing[@]}" || apt_get update ||
+  echo "The package lists could not be updated; trying with what is there." >&2
+if ! apt_get install -y --no-install-recommends "${missing[@]}"; then
+  # A list that is out of date, or a download that broke.
+  echo "Installation failed; trying once more with new package lists." >&2
+  apt_get update || true
+  apt_get install -y --no-install-recommends "${missing[@]}" ||
+    fail "could not install: ${missing[*]}"
+fi
+
+read -r -a missing <<<"$(missing_packages)"
+((${#missing[@]} == 0)) || fail "still not installed: ${missing[*]}"
+echo "All ${#PACKAGES[@]} packages are installed."
