@@ -15,6 +15,12 @@ Rigid3 Interpolate(const Rigid3& start, const Rigid3& end,
       start.rotation.slerp(fraction, end.rotation).normalized()};
 }
 
+// Of times in order; their difference may exceed int64_t.
+double Duration(const int64_t start, const int64_t end) {
+  return static_cast<double>(static_cast<uint64_t>(end) -
+                             static_cast<uint64_t>(start));
+}
+
 }  // namespace
 
 NodeOdometry::NodeOdometry(const std::map<NodeId, Node>& nodes) {
@@ -40,9 +46,8 @@ absl::Status NodeOdometry::Add(const int trajectory, const int64_t time,
     if (node_time == time) {
       poses_.emplace(id, pose);
     } else if (state.last.has_value()) {
-      const double fraction =
-          static_cast<double>(node_time - state.last->time) /
-          static_cast<double>(time - state.last->time);
+      const double fraction = Duration(state.last->time, node_time) /
+                              Duration(state.last->time, time);
       poses_.emplace(id, Interpolate(state.last->pose, pose, fraction));
     }
   }

@@ -10,13 +10,20 @@
 
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 
+// zlib's z_stream.
+struct z_stream_s;
+
 namespace cartographer_sdf {
+
+// Made once per file: most records are tiny, and a stream is not.
+using ZlibStream = std::unique_ptr<z_stream_s, void (*)(z_stream_s*)>;
 
 class RecordReader {
  public:
@@ -38,7 +45,7 @@ class RecordReader {
   [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const;
 
  private:
-  RecordReader() = default;
+  RecordReader();
 
   [[nodiscard]] absl::Status ReadBytes(int64_t count, char* bytes);
   [[nodiscard]] absl::Status Inflate(int64_t compressed_size,
@@ -46,6 +53,7 @@ class RecordReader {
 
   std::string path_;
   std::ifstream file_;
+  ZlibStream stream_;
   int64_t position_ = 0;
   int64_t size_ = 0;
   int num_records_ = 0;
@@ -69,16 +77,18 @@ class RecordWriter {
   [[nodiscard]] absl::Status Commit();
 
  private:
-  RecordWriter() = default;
+  RecordWriter();
 
   [[nodiscard]] absl::Status CreateTemporaryFile();
   [[nodiscard]] absl::Status WriteBytes(const std::string& bytes);
+  [[nodiscard]] std::string Deflate(const std::string& record);
 
   // As given, for messages; and what it stands for once links are followed.
   std::string path_;
   std::string target_path_;
   std::string temporary_path_;
   int file_descriptor_ = -1;
+  ZlibStream stream_;
 };
 
 }  // namespace cartographer_sdf
