@@ -40,9 +40,10 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .3rem .7rem; text-align: right; vertical-align: middle;
   border-bottom: 1px solid var(--line); }
 th { color: var(--faint); font-weight: 600; }
-td.text, th.text { text-align: left; }
+td { white-space: nowrap; }
+td.text, th.text { text-align: left; white-space: normal; }
 .summary th { text-align: left; }
-.summary td { text-align: left; overflow-wrap: anywhere; }
+.summary td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
 .wide { overflow-x: auto; }
 .wide table { width: 100%; }
 .accepted { color: var(--good); font-weight: 600; }
@@ -51,7 +52,7 @@ td.text, th.text { text-align: left; }
   grid-template-columns: repeat(auto-fit, minmax(22rem, 1fr)); }
 figure { margin: 0; }
 figcaption { color: var(--faint); margin-bottom: .3rem; }
-.zoom { cursor: zoom-in; display: block; }
+.zoom { cursor: zoom-in; display: block; position: relative; }
 .zoom input { position: absolute; opacity: 0; width: 1px; height: 1px; }
 .zoom img { display: block; width: 100%; border: 1px solid var(--line); }
 .zoom input:focus-visible + img { outline: 3px solid var(--accent); }
