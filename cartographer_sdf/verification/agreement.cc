@@ -10,7 +10,7 @@ namespace cartographer_sdf {
 
 DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const SurfaceModel& model,
-                                   const SurfaceModel& points,
+                                   const std::vector<SurfacePoint>& points,
                                    const Rigid2& T_model_points,
                                    const size_t max_num_points) {
   const DistanceField& field = model.field;
@@ -22,9 +22,9 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
   const float contradiction =
       static_cast<float>(options.contradiction_distance_meters);
   DirectedAgreement result;
-  const size_t count = std::min(max_num_points, points.walls.size());
+  const size_t count = std::min(max_num_points, points.size());
   for (size_t k = 0; k < count; ++k) {
-    const SurfacePoint& wall = points.walls[k];
+    const SurfacePoint& wall = points[k];
     const Eigen::Vector2d p_grid =
         R * wall.position + T_grid_points.translation();
     const double x = std::floor(p_grid.x() / geometry.resolution);
@@ -49,6 +49,15 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
     }
   }
   return result;
+}
+
+DirectedAgreement MeasureAgreement(const AgreementOptions& options,
+                                   const SurfaceModel& model,
+                                   const SurfaceModel& points,
+                                   const Rigid2& T_model_points,
+                                   const size_t max_num_points) {
+  return MeasureAgreement(options, model, points.walls, T_model_points,
+                          max_num_points);
 }
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,

@@ -44,6 +44,12 @@ struct DirectedAgreement {
     const SurfaceModel& points, const Rigid2& T_model_points,
     size_t max_num_points);
 
+// The same for points that are not a submap's, such as a scan's.
+[[nodiscard]] DirectedAgreement MeasureAgreement(
+    const AgreementOptions& options, const SurfaceModel& model,
+    const std::vector<SurfacePoint>& points, const Rigid2& T_model_points,
+    size_t max_num_points);
+
 // Area observed by both [m^2], by the query's observed points.
 [[nodiscard]] double OverlapArea(const SurfaceModel& reference,
                                  const SurfaceModel& query,

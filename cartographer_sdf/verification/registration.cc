@@ -174,14 +174,28 @@ std::optional<Registration> RegisterSubmaps(
 std::optional<Registration> RegisterPoints(
     const RegistrationOptions& options, const SurfaceModel& reference,
     const std::vector<SurfacePoint>& points,
-    const Rigid2& guess_T_reference_points) {
-  return GaussNewton(options, guess_T_reference_points,
-                     [&](const Rigid2& pose, const double scale,
-                         NormalEquations* const equations) {
-                       AddForward(reference.field, points,
-                                  Count(options, points), pose, scale,
-                                  equations);
-                     });
+    const Rigid2& guess_T_reference_points, const PosePrior& prior) {
+  CHECK_GT(prior.translation_sigma, 0.);
+  CHECK_GT(prior.rotation_sigma, 0.);
+  const double per_meter = prior.residual_sigma / prior.translation_sigma;
+  const double per_radian = prior.residual_sigma / prior.rotation_sigma;
+  const Eigen::Vector3d precision(per_meter * per_meter, per_meter * per_meter,
+                                  per_radian * per_radian);
+  return GaussNewton(
+      options, guess_T_reference_points,
+      [&](const Rigid2& pose, const double scale,
+          NormalEquations* const equations) {
+        AddForward(reference.field, points, Count(options, points), pose, scale,
+                   equations);
+        const Eigen::Vector2d moved =
+            pose.translation() - guess_T_reference_points.translation();
+        const Eigen::Vector3d deviation(
+            moved.x(), moved.y(),
+            NormalizeAngle(pose.rotation() -
+                           guess_T_reference_points.rotation()));
+        equations->A.diagonal() += precision;
+        equations->b -= precision.cwiseProduct(deviation);
+      });
 }
 
 }  // namespace cartographer_sdf

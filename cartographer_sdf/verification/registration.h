@@ -50,12 +50,18 @@ struct Registration {
     const RegistrationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& guess_T_reference_query);
 
-// Points of equal weight (a scan, in its node's frame) to the reference's
-// field.
+// Points (a scan, in its node's frame) to the reference's field. The guess is
+// held by a prior of these standard deviations [m], [rad] against residuals of
+// `residual_sigma` [m], so that it stays where the walls leave it free.
+struct PosePrior {
+  double translation_sigma;
+  double rotation_sigma;
+  double residual_sigma = 0.05;
+};
 [[nodiscard]] std::optional<Registration> RegisterPoints(
     const RegistrationOptions& options, const SurfaceModel& reference,
     const std::vector<SurfacePoint>& points,
-    const Rigid2& guess_T_reference_points);
+    const Rigid2& guess_T_reference_points, const PosePrior& prior);
 
 }  // namespace cartographer_sdf
 

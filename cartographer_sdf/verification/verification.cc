@@ -251,7 +251,6 @@ std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement,
   const DirectedAgreement& a = agreement.query_in_reference;
   const DirectedAgreement& b = agreement.reference_in_query;
   return {0.5 * (a.HitRatio() + b.HitRatio()),
-          std::min(a.HitRatio(), b.HitRatio()),
           0.5 * (a.ContradictionRatio() + b.ContradictionRatio()),
           std::max(a.ContradictionRatio(), b.ContradictionRatio()),
           std::log(1. + agreement.overlap_area),
@@ -265,10 +264,13 @@ double Score(const ScoreWeights& weights, const Agreement& agreement,
   const std::array<double, kNumScoreTerms> terms =
       ScoreTerms(agreement, margin);
   const std::array<double, kNumScoreTerms> factors = {
-      weights.mean_hit_ratio,           weights.min_hit_ratio,
-      weights.mean_contradiction_ratio, weights.max_contradiction_ratio,
-      weights.log_overlap_area,         weights.log_overlap,
-      weights.sqrt_scatter_eigenvalue,  weights.margin};
+      weights.mean_hit_ratio,
+      weights.mean_contradiction_ratio,
+      weights.max_contradiction_ratio,
+      weights.log_overlap_area,
+      weights.log_overlap,
+      weights.sqrt_scatter_eigenvalue,
+      weights.margin};
   double score = weights.bias;
   for (int k = 0; k < kNumScoreTerms; ++k) score += factors[k] * terms[k];
   return score;

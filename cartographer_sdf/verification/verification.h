@@ -54,15 +54,14 @@ struct RankingOptions {
 // learned by logistic regression (scripts/learn_score.py) on pairs of submaps
 // of several buildings; see docs/results.
 struct ScoreWeights {
-  double mean_hit_ratio = 0.;
-  double min_hit_ratio = 0.;  // of the two directions
-  double mean_contradiction_ratio = 0.;
-  double max_contradiction_ratio = 0.;
-  double log_overlap_area = 0.;  // ln(1 + m^2)
-  double log_overlap = 0.;       // ln(0.05 + fraction of the smaller area)
-  double sqrt_scatter_eigenvalue = 0.;
-  double margin = 0.;  // of quality to the best distinct pose, capped
-  double bias = 0.;
+  double mean_hit_ratio = 7.8;  // of the two directions
+  double mean_contradiction_ratio = -91.;
+  double max_contradiction_ratio = -15.;
+  double log_overlap_area = 0.76;  // ln(1 + m^2)
+  double log_overlap = 2.5;        // ln(0.05 + fraction of the smaller area)
+  double sqrt_scatter_eigenvalue = 20.;
+  double margin = 18.;  // of quality to the best distinct pose, capped
+  double bias = -18.5;
 };
 
 struct VerificationOptions {
@@ -102,7 +101,7 @@ struct Agreement {
 constexpr double kMaxMargin = 0.25;
 
 // The terms of ScoreWeights without the bias, in their order.
-constexpr int kNumScoreTerms = 8;
+constexpr int kNumScoreTerms = 7;
 [[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
     const Agreement& agreement, double margin);
 [[nodiscard]] double Score(const ScoreWeights& weights,

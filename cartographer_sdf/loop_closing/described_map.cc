@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/loop_closing/described_map.h"
+
+#include <iterator>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace cartographer_sdf {
+namespace {
+
+// So many grids are described at once: enough for the threads of a large
+// machine, little memory.
+constexpr size_t kBatchSize = 16;
+
+class BatchDescriber {
+ public:
+  BatchDescriber(const PlaceOptions& options, const Executor& executor,
+                 std::map<SubmapId, Place>* const places)
+      : options_(options), executor_(executor), places_(places) {}
+
+  void Add(const SubmapId& id, const OccupancyGrid& grid) {
+    batch_.emplace_back(id, grid);
+    if (batch_.size() >= kBatchSize) Flush();
+  }
+
+  void Flush() {
+    std::vector<std::optional<Place>> described(batch_.size());
+    executor_(batch_.size(), [&](const size_t k) {
+      described[k] = DescribePlace(options_, batch_[k].first, batch_[k].second);
+    });
+    for (std::optional<Place>& place : described) {
+      if (place) places_->emplace(place->id, *std::move(place));
+    }
+    batch_.clear();
+  }
+
+ private:
+  const PlaceOptions& options_;
+  const Executor& executor_;
+  std::map<SubmapId, Place>* const places_;
+  std::vector<std::pair<SubmapId, OccupancyGrid>> batch_;
+};
+
+using PlacePair = std::pair<const Place*, const Place*>;  // reference, query
+
+std::vector<Match> MatchPairs(const MatchOptions& options,
+                              const std::vector<PlacePair>& pairs,
+                              const Executor& executor,
+                              const ProgressCallback& on_progress) {
+  std::vector<std::optional<Match>> found(pairs.size());
+  std::mutex progress_mutex;
+  size_t num_done = 0;
+  executor(pairs.size(), [&](const size_t k) {
+    found[k] = MatchPlaces(options, *pairs[k].first, *pairs[k].second);
+    if (!on_progress) return;
+    const std::lock_guard<std::mutex> lock(progress_mutex);
+    on_progress(static_cast<double>(++num_done) /
+                static_cast<double>(pairs.size()));
+  });
+  std::vector<Match> matches;
+  for (std::optional<Match>& match : found) {
+    if (match) matches.push_back(*std::move(match));
+  }
+  return matches;
+}
+
+}  // namespace
+
+absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& options,
+                                         const std::string& path,
+                                         const Executor& executor,
+                                         const ProgressCallback& on_progress) {
+  DescribedMap map;
+  BatchDescriber describer(options, executor, &map.places);
+  absl::StatusOr<MapState> state = ReadMap(
+      path,
+      [&describer](const SubmapId& id, const SubmapSummary&,
+                   const OccupancyGrid& grid) { describer.Add(id, grid); },
+      on_progress);
+  if (!state.ok()) return state.status();
+  describer.Flush();
+  map.state = *std::move(state);
+  return map;
+}
+
+std::vector<Match> MatchWithin(const MatchOptions& options,
+                               const std::map<SubmapId, Place>& places,
+                               const int min_index_gap,
+                               const Executor& executor,
+                               const ProgressCallback& on_progress) {
+  std::vector<PlacePair> pairs;
+  for (auto reference = places.begin(); reference != places.end();
+       ++reference) {
+    for (auto query = std::next(reference); query != places.end(); ++query) {
+      const SubmapId &r = reference->first, &q = query->first;
+      if (r.trajectory == q.trajectory && q.index - r.index < min_index_gap) {
+        continue;
+      }
+      pairs.emplace_back(&reference->second, &query->second);
+    }
+  }
+  return MatchPairs(options, pairs, executor, on_progress);
+}
+
+std::vector<Match> MatchBetween(const MatchOptions& options,
+                                const std::map<SubmapId, Place>& references,
+                                const std::map<SubmapId, Place>& queries,
+                                const Executor& executor,
+                                const ProgressCallback& on_progress) {
+  std::vector<PlacePair> pairs;
+  for (const auto& reference : references) {
+    for (const auto& query : queries) {
+      pairs.emplace_back(&reference.second, &query.second);
+    }
+  }
+  return MatchPairs(options, pairs, executor, on_progress);
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A saved map with every submap made a place, and all pairs of places matched.
+// No pose of the map takes part.
+
+#ifndef CARTOGRAPHER_SDF_LOOP_CLOSING_DESCRIBED_MAP_H_
+#define CARTOGRAPHER_SDF_LOOP_CLOSING_DESCRIBED_MAP_H_
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/place.h"
+
+namespace cartographer_sdf {
+
+// Runs task(0), ..., task(n - 1), each once, in any order, perhaps at once, and
+// returns when all are done.
+using Executor =
+    std::function<void(size_t n, const std::function<void(size_t)>& task)>;
+
+struct DescribedMap {
+  MapState state;
+  // Submaps without a wall are no places.
+  std::map<SubmapId, Place> places;
+};
+
+// Fails as ReadMap does. Holds a few grids at a time.
+[[nodiscard]] absl::StatusOr<DescribedMap> DescribeMap(
+    const PlaceOptions& options, const std::string& path,
+    const Executor& executor, const ProgressCallback& on_progress = {});
+
+// Every unordered pair of one map, the lower id as the reference. Submaps of
+// one trajectory whose indices differ by less than `min_index_gap` are left
+// out: they share scans, and local SLAM has related them already. Pairs without
+// a pose worth reporting yield nothing; the order is that of the ids.
+[[nodiscard]] std::vector<Match> MatchWithin(
+    const MatchOptions& options, const std::map<SubmapId, Place>& places,
+    int min_index_gap, const Executor& executor,
+    const ProgressCallback& on_progress = {});
+
+// Every pair of a reference of one map and a query of another.
+[[nodiscard]] std::vector<Match> MatchBetween(
+    const MatchOptions& options, const std::map<SubmapId, Place>& references,
+    const std::map<SubmapId, Place>& queries, const Executor& executor,
+    const ProgressCallback& on_progress = {});
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_LOOP_CLOSING_DESCRIBED_MAP_H_

@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The main job: finds the loop closures of a saved map by what its submaps look
+// like, keeps a mutually consistent set, and optimises the pose graph with it.
+
+#ifndef CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
+#define CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
+
+#include <functional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/closure/consistency.h"
+#include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/pose_graph/lifting.h"
+#include "cartographer_sdf/pose_graph/optimization.h"
+#include "cartographer_sdf/recognition/match.h"
+
+namespace cartographer_sdf {
+
+// A closure that the optimised graph contradicts is withdrawn and the rest is
+// optimised again.
+struct WithdrawalOptions {
+  // Largest mean error of a closure's constraints [m], [rad].
+  double max_translation_error_meters = 0.5;
+  double max_rotation_error = 0.1;
+  int max_num_rounds = 10;
+};
+[[nodiscard]] std::string Validate(const WithdrawalOptions& options);
+
+struct LoopClosingOptions {
+  PlaceOptions place;
+  MatchOptions match;  // method kSdf
+  // Submaps of one trajectory are matched from this difference of their
+  // indices on; nearer ones share scans.
+  int min_index_gap = 3;
+  ConsistencyOptions consistency;
+  LiftingOptions lifting;
+  OptimizationOptions optimization;
+  WithdrawalOptions withdrawal;
+};
+[[nodiscard]] std::string Validate(const LoopClosingOptions& options);
+
+// What became of a match that verification accepted.
+enum class Fate {
+  kInGraph,
+  kContradicted,   // by weightier closures
+  kUnsupported,    // by no other, and not certain enough alone
+  kScansDisagree,  // the scans of its nodes do not fit
+  kWithdrawn,      // the optimised graph contradicts it
+};
+// "in_graph", ...
+[[nodiscard]] const char* FateName(Fate fate);
+
+struct ClosureOutcome {
+  Match match;
+  Fate fate;
+  // Its constraints in the final graph; empty unless kInGraph.
+  std::vector<Constraint> constraints;
+  // Mean error of its constraints in the last optimised graph that had them;
+  // zero for those that were never in one.
+  ConstraintError error;
+};
+
+struct LoopClosingResult {
+  MapState state;        // as read
+  PoseGraph pose_graph;  // optimised, with the new constraints at the end
+  std::vector<ClosureOutcome> closures;  // all accepted matches, by ids
+  size_t num_places = 0;
+  size_t num_matches = 0;  // poses that were verified, accepted or not
+  std::vector<OptimizationSummary> optimizations;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+};
+
+// Called at the beginning of each stage with its name; returns what is told of
+// its progress. May be empty.
+using StageCallback = std::function<ProgressCallback(const std::string& stage)>;
+
+// Fails where the file can't be read. Frozen trajectories stay where they are.
+[[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
+    const LoopClosingOptions& options, const std::string& path,
+    const std::set<int>& frozen_trajectories, const Executor& executor,
+    const StageCallback& on_stage = {});
+
+// Where local SLAM says that the submaps are, and how far the robot had driven.
+[[nodiscard]] std::map<SubmapId, OdometryPose> OdometryPoses(
+    const MapState& state);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
