@@ -379,7 +379,7 @@ TEST(OptimizeTest, TurnsAWholeTrajectoryAround) {
   round_trip.nodes_between_submaps = 50;
   round_trip.translation_noise = 0.01;
   round_trip.yaw_noise = 1e-3;
-  round_trip.nodes_between_closures = 25;
+  round_trip.nodes_between_closures = 5;
   const RoundTrip trip = MakeRoundTrip(round_trip);
   PoseGraph from_truth = SplitTrajectory(trip.truth, 10, 500, Rigid2());
   const OptimizationSummary best = Optimize({}, {}, &from_truth);
