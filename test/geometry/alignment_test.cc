@@ -19,7 +19,7 @@ using Points = std::vector<Eigen::Vector2d>;
 constexpr double kExact = 1e-12;
 
 double Uniform(std::mt19937* const engine) {
-  return (*engine)() / 4294967296. - 0.5;
+  return static_cast<double>((*engine)()) / 4294967296. - 0.5;
 }
 
 Points RandomPoints(const int count, const double extent,
