@@ -58,8 +58,8 @@ ConstraintKey KeyOf(const Constraint& constraint) {
   return {constraint.submap, constraint.node, constraint.tag};
 }
 
-absl::Status CheckNewConstraint(const PoseGraph& graph,
-                                const Constraint& constraint) {
+absl::Status CheckWantedConstraint(const PoseGraph& graph,
+                                   const Constraint& constraint) {
   const std::string subject =
       absl::StrCat("the constraint of ", Name("submap", constraint.submap),
                    " and ", Name("node", constraint.node));
@@ -121,7 +121,7 @@ absl::StatusOr<bool> UpdateConstraints(const PoseGraph& before,
   bool changed = after.constraints.size() != before.constraints.size();
   google::protobuf::RepeatedPtrField<proto::Constraint> updated;
   for (const Constraint& constraint : after.constraints) {
-    if (absl::Status status = CheckNewConstraint(before, constraint);
+    if (absl::Status status = CheckWantedConstraint(before, constraint);
         !status.ok()) {
       return status;
     }

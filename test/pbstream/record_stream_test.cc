@@ -3,8 +3,10 @@
 
 #include "cartographer_sdf/pbstream/record_stream.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -249,6 +251,31 @@ TEST(RecordStreamTest, KeepsLinksAndPermissions) {
   EXPECT_EQ(
       std::filesystem::status(directory.File("a")).permissions(),
       std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+}
+
+// Stands for a full disk.
+TEST(RecordStreamTest, NoticesThatWritingFails) {
+  const TemporaryDirectory directory;
+  WriteFile(directory.File("a"), "old");
+  rlimit original = {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &original), 0);
+  const auto original_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = original;
+  small.rlim_cur = 1000;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  absl::Status status;
+  {
+    absl::StatusOr<RecordWriter> writer =
+        RecordWriter::Open(directory.File("a"));
+    // Incompressible.
+    if (writer.ok()) status = writer->Write(SomeRecords()[2]);
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &original), 0);
+  std::signal(SIGXFSZ, original_handler);
+  EXPECT_EQ(std::string(status.message()),
+            "cannot write " + directory.File("a") + ": File too large");
+  EXPECT_THAT(FilesIn(directory.path()), ElementsAre("a"));
+  EXPECT_EQ(ReadFile(directory.File("a")), "old");
 }
 
 TEST(RecordStreamTest, SaysWhyItCannotWrite) {
