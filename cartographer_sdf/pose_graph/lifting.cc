@@ -70,8 +70,7 @@ std::optional<Rigid2> RegisterNode(const LiftingOptions& options,
 std::vector<Constraint> LiftOneWay(
     const LiftingOptions& options, const PoseGraph& pose_graph,
     const SubmapId& submap, const SurfaceModel& surface, const SubmapId& other,
-    const Rigid2& T_submap_other, const ScansByNode& scans,
-    const bool believe_registration) {
+    const Rigid2& T_submap_other, const ScansByNode& scans) {
   const std::map<NodeId, Rigid2> nodes = InsertedNodes(pose_graph, other);
   std::vector<Constraint> constraints;
   for (const NodeId& node : EvenlySpaced(options, nodes)) {
