@@ -154,10 +154,24 @@ bool Withdraw(const WithdrawalOptions& options, const PoseGraph& pose_graph,
   return true;
 }
 
+OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
+                                   const PoseGraph& pose_graph) {
+  OptimizationOptions in_force = options.optimization;
+  if (!options.infer_odometry_weights) return in_force;
+  const std::optional<OdometryWeights> inferred =
+      InferOdometryWeights(options.optimization, pose_graph);
+  if (inferred) {
+    in_force.odometry_translation_weight = inferred->translation;
+    in_force.odometry_rotation_weight = inferred->rotation;
+  }
+  return in_force;
+}
+
 void OptimizeAndWithdraw(const LoopClosingOptions& options,
                          const std::set<int>& frozen_trajectories,
                          const ProgressCallback& on_progress,
                          LoopClosingResult* const result) {
+  result->optimization = OptionsInForce(options, result->state.pose_graph);
   for (int round = 0;; ++round) {
     // From the poses of the file each time: a withdrawn closure leaves no
     // trace.
@@ -168,7 +182,7 @@ void OptimizeAndWithdraw(const LoopClosingOptions& options,
           outcome.constraints.end());
     }
     result->optimizations.push_back(Optimize(
-        options.optimization, frozen_trajectories, &result->pose_graph));
+        result->optimization, frozen_trajectories, &result->pose_graph));
     if (on_progress) {
       on_progress(static_cast<double>(round + 1) /
                   (options.withdrawal.max_num_rounds + 1));

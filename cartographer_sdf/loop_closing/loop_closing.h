@@ -17,6 +17,7 @@
 #include "cartographer_sdf/closure/consistency.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
 #include "cartographer_sdf/pose_graph/lifting.h"
+#include "cartographer_sdf/pose_graph/odometry_weights.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/recognition/match.h"
 
@@ -41,6 +42,9 @@ struct LoopClosingOptions {
   ConsistencyOptions consistency;
   LiftingOptions lifting;
   OptimizationOptions optimization;
+  // Whether odometry weights that the map itself shows (odometry_weights.h)
+  // take the place of those of `optimization`.
+  bool infer_odometry_weights = true;
   WithdrawalOptions withdrawal;
 };
 [[nodiscard]] std::string Validate(const LoopClosingOptions& options);
@@ -72,6 +76,8 @@ struct LoopClosingResult {
   std::vector<ClosureOutcome> closures;  // all accepted matches, by ids
   size_t num_places = 0;
   size_t num_matches = 0;  // poses that were verified, accepted or not
+  // The options in force, odometry weights as inferred.
+  OptimizationOptions optimization;
   std::vector<OptimizationSummary> optimizations;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
