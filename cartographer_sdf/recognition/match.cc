@@ -101,10 +101,10 @@ std::string Validate(const MatchOptions& options) {
     if (!error.empty()) return error;
   }
   if (!(options.inlier_distance_meters > 0.)) {
-    return "match.inlier_distance_meters must be positive";
+    return "inlier_distance_meters must be positive";
   }
   if (options.min_num_inliers < 2) {
-    return "match.min_num_inliers must be at least 2";
+    return "min_num_inliers must be at least 2";
   }
   return "";
 }

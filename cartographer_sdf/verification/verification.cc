@@ -211,31 +211,51 @@ const char* VerdictName(const Verdict verdict) {
   LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
 }
 
+std::string Validate(const RankingOptions& options) {
+  if (options.num_coarse_points < 1 || options.num_fine_points < 1 ||
+      options.num_coarse_survivors < 1 || options.num_refined < 1) {
+    return "num_coarse_points, num_fine_points, num_coarse_survivors and "
+           "num_refined must be positive";
+  }
+  if (!(options.hit_distance_meters > 0. &&
+        options.contradiction_distance_meters >= options.hit_distance_meters)) {
+    return "hit_distance_meters must be positive and not above "
+           "contradiction_distance_meters";
+  }
+  if (!(options.contradiction_weight >= 0.)) {
+    return "contradiction_weight must not be negative";
+  }
+  return "";
+}
+
+std::string Validate(const ScoreWeights& weights) {
+  for (const double weight :
+       {weights.mean_hit_ratio, weights.mean_contradiction_ratio,
+        weights.max_contradiction_ratio, weights.log_overlap_area,
+        weights.log_overlap, weights.sqrt_scatter_eigenvalue, weights.margin,
+        weights.bias}) {
+    if (!std::isfinite(weight))
+      return "mean_hit_ratio and others must be finite";
+  }
+  return "";
+}
+
 std::string Validate(const VerificationOptions& options) {
-  const RankingOptions& ranking = options.ranking;
-  if (options.num_agreement_points < 1 || ranking.num_coarse_points < 1 ||
-      ranking.num_fine_points < 1 || ranking.num_coarse_survivors < 1 ||
-      ranking.num_refined < 1) {
-    return "verification: numbers must be positive";
+  for (const std::string& error :
+       {Validate(options.ranking), Validate(options.registration),
+        Validate(options.agreement), Validate(options.score_weights)}) {
+    if (!error.empty()) return error;
   }
-  if (!(ranking.hit_distance_meters > 0. &&
-        ranking.contradiction_distance_meters >= ranking.hit_distance_meters &&
-        ranking.contradiction_weight >= 0.)) {
-    return "verification.ranking: distances must be positive, that of a "
-           "contradiction not below that of a hit, and its weight not negative";
-  }
-  if (!(options.agreement.hit_distance_meters > 0. &&
-        options.agreement.contradiction_distance_meters >=
-            options.agreement.hit_distance_meters)) {
-    return "verification.agreement: distances must be positive, and that of a "
-           "contradiction not below that of a hit";
+  if (options.num_agreement_points < 1) {
+    return "num_agreement_points must be positive";
   }
   if (!(options.min_overlap_area >= 0. &&
         options.max_contradiction_ratio >= 0. &&
         options.min_scatter_eigenvalue >= 0. && options.min_margin >= 0.)) {
-    return "verification: thresholds must not be negative";
+    return "min_overlap_area, max_contradiction_ratio, min_scatter_eigenvalue "
+           "and min_margin must not be negative";
   }
-  return Validate(options.registration);
+  return "";
 }
 
 double Agreement::Quality() const {

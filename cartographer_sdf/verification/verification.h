@@ -49,6 +49,7 @@ struct RankingOptions {
   double min_coarse_score = 0.3;
   double min_fine_score = 0.45;
 };
+[[nodiscard]] std::string Validate(const RankingOptions& options);
 
 // The score, log-odds of being right, is linear in these terms. The weights are
 // learned by logistic regression (scripts/learn_score.py) on pairs of submaps
@@ -63,6 +64,7 @@ struct ScoreWeights {
   double margin = 18.;  // of quality to the best distinct pose, capped
   double bias = -18.5;
 };
+[[nodiscard]] std::string Validate(const ScoreWeights& weights);
 
 struct VerificationOptions {
   RankingOptions ranking;
