@@ -7,20 +7,21 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "glog/logging.h"
 
-namespace cartographer_sdf::testing {
-
-// A new directory, removed with all its content in the end.
+// A directory of its own, removed with all that is in it.
 class TemporaryDirectory {
  public:
-  TemporaryDirectory()
-      : path_((std::filesystem::temp_directory_path() /
-               "cartographer_sdf_test_XXXXXX")
-                  .string()) {
-    CHECK(mkdtemp(path_.data()) != nullptr) << path_;
+  TemporaryDirectory() {
+    std::string path =
+        (std::filesystem::temp_directory_path() / "cartographer_sdf_XXXXXX")
+            .string();
+    CHECK(mkdtemp(path.data()) != nullptr) << path;
+    path_ = path;
   }
   TemporaryDirectory(const TemporaryDirectory&) = delete;
   TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
@@ -30,14 +31,28 @@ class TemporaryDirectory {
   }
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] std::string File(const std::string& name) const {
+  [[nodiscard]] std::string PathOf(const std::string& name) const {
     return path_ + "/" + name;
+  }
+  [[nodiscard]] std::string File(const std::string& name) const {
+    return PathOf(name);
+  }
+  std::string Write(const std::string& name, const std::string& content) const {
+    std::ofstream(PathOf(name), std::ios::binary) << content;
+    return PathOf(name);
+  }
+  [[nodiscard]] std::string Read(const std::string& name) const {
+    std::ostringstream content;
+    content << std::ifstream(PathOf(name), std::ios::binary).rdbuf();
+    return content.str();
   }
 
  private:
   std::string path_;
 };
 
+namespace cartographer_sdf::testing {
+using ::TemporaryDirectory;
 }  // namespace cartographer_sdf::testing
 
 #endif  // TEST_TESTING_TEMPORARY_DIRECTORY_H_

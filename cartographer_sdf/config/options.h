@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// All options of the program, and the one place that says under which keys of
+// SDF_GLOBAL_CONSTRAINTS they are found.
+
+#ifndef CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
+#define CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/report/report_options.h"
+
+namespace cartographer_sdf {
+
+struct Options {
+  ReportOptions report;
+};
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ReportOptions& options) {
+  visit("map_picture_pixels", options.map_picture_pixels);
+  visit("closure_picture_pixels", options.closure_picture_pixels);
+  visit("max_closure_pictures", options.max_closure_pictures);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, Options& options) {
+  visit("report", options.report);
+}
+
+// Of what concerns several stages; each stage's own options are validated by
+// themselves.
+[[nodiscard]] std::string Validate(const Options& options);
+
+// Looks for the file and what it includes in the directories, in their order.
+[[nodiscard]] absl::StatusOr<Options> LoadOptions(
+    const std::vector<std::string>& directories, const std::string& basename);
+
+// As Lua that LoadOptions would read.
+[[nodiscard]] std::string FormatOptions(const Options& options);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_

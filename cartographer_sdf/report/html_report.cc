@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/report/html_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_sdf/report/markup.h"
+#include "cartographer_sdf/report/whole_file.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Of the PNGs of closures together; base64 takes a third more.
+constexpr size_t kMaxClosurePictureBytes = size_t{20} << 20;
+
+// A picture is enlarged by a hidden checkbox before it, without a script.
+constexpr char kStyle[] = R"css(
+:root { color-scheme: light dark; --ink: #1b1f24; --paper: #ffffff;
+  --soft: #f3f5f8; --line: #d4d9e0; --faint: #5d6673; --accent: #0072b2;
+  --good: #00794f; --bad: #b34700; }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e4e8ed; --paper: #14171b; --soft: #1e2329; --line: #39414b;
+    --faint: #9aa4b1; --accent: #5ab4e8; --good: #3fbf8f; --bad: #f0883e; } }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 1.5rem; max-width: 84rem; color: var(--ink);
+  background: var(--paper); font: 15px/1.5 system-ui, sans-serif; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: 0; overflow-wrap: anywhere; }
+h2 { font-size: 1.15rem; margin: 2.2rem 0 .7rem; padding-bottom: .2rem;
+  border-bottom: 2px solid var(--accent); }
+.subtitle { color: var(--faint); margin: .3rem 0 0; overflow-wrap: anywhere; }
+.warning { border-left: 4px solid var(--bad); background: var(--soft);
+  padding: .5rem .8rem; margin: .6rem 0; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+th, td { padding: .3rem .7rem; text-align: right; vertical-align: middle;
+  border-bottom: 1px solid var(--line); }
+th { color: var(--faint); font-weight: 600; }
+td { white-space: nowrap; }
+td.text, th.text { text-align: left; white-space: normal; }
+.summary th { text-align: left; }
+.summary td { text-align: left; white-space: normal; overflow-wrap: anywhere; }
+.wide { overflow-x: auto; }
+.wide table { width: 100%; }
+.accepted { color: var(--good); font-weight: 600; }
+.withdrawn { color: var(--bad); font-weight: 600; }
+.columns { display: grid; gap: 1.2rem;
+  grid-template-columns: repeat(auto-fit, minmax(22rem, 1fr)); }
+figure { margin: 0; }
+figcaption { color: var(--faint); margin-bottom: .3rem; }
+.zoom { cursor: zoom-in; display: block; position: relative; }
+.zoom input { position: absolute; opacity: 0; width: 1px; height: 1px; }
+.zoom img { display: block; width: 100%; border: 1px solid var(--line); }
+.zoom input:focus-visible + img { outline: 3px solid var(--accent); }
+.zoom input:checked + img { position: fixed; inset: 0; z-index: 1;
+  width: 100vw; height: 100vh; object-fit: contain; padding: 1rem;
+  background: var(--paper); cursor: zoom-out; }
+td .zoom { width: 8.5rem; margin: 0 auto; }
+.plot { width: 100%; max-width: 34rem; height: auto; }
+.bar { background: var(--accent); height: .8rem; min-width: 1px; }
+.stages td:last-child { width: 60%; }
+.stages table { width: 100%; }
+.legend { color: var(--faint); }
+.key { display: inline-block; width: .8rem; height: .8rem; margin: 0 .3rem 0 .9rem;
+  vertical-align: -.05rem; border: 1px solid var(--line); }
+pre { background: var(--soft); padding: 1rem; overflow-x: auto; }
+summary { cursor: pointer; color: var(--accent); }
+@media print {
+  body { max-width: none; padding: 0; font-size: 10px; }
+  tr, figure, .plot { break-inside: avoid; }
+  .columns { grid-template-columns: 1fr 1fr; }
+  td .zoom { width: 6rem; }
+  .wide { overflow: visible; } }
+)css";
+
+std::string Zoomable(const std::string& png, const std::string& description) {
+  return absl::StrCat(
+      "<label class=\"zoom\"><input type=\"checkbox\" "
+      "aria-label=\"enlarge\"/><img alt=\"",
+      EscapeMarkup(description), "\" src=\"data:image/png;base64,",
+      absl::Base64Escape(png), "\"/></label>");
+}
+
+std::string Section(const std::string& heading, const std::string& body) {
+  return absl::StrCat("<section>\n<h2>", EscapeMarkup(heading), "</h2>\n", body,
+                      "</section>\n");
+}
+
+std::string RenderSummary(const ReportContent& content) {
+  std::string html;
+  for (const std::string& warning : content.warnings) {
+    absl::StrAppend(&html, "<p class=\"warning\">", EscapeMarkup(warning),
+                    "</p>\n");
+  }
+  if (!content.summary.empty()) {
+    html += "<table class=\"summary\">\n";
+    for (const auto& [name, value] : content.summary) {
+      absl::StrAppend(&html, "<tr><th scope=\"row\">", EscapeMarkup(name),
+                      "</th><td>", EscapeMarkup(value), "</td></tr>\n");
+    }
+    html += "</table>\n";
+  }
+  return html.empty() ? html : Section("Summary", html);
+}
+
+std::string RenderMaps(const std::vector<ReportedPicture>& maps) {
+  if (maps.empty()) return "";
+  std::string html = "<div class=\"columns\">\n";
+  for (const ReportedPicture& map : maps) {
+    absl::StrAppend(&html, "<figure><figcaption>", EscapeMarkup(map.caption),
+                    " (click to enlarge)</figcaption>",
+                    Zoomable(map.png, map.caption), "</figure>\n");
+  }
+  return Section("Map", html + "</div>\n");
+}
+
+std::string IdText(const SubmapId& id) {
+  return absl::StrCat(id.trajectory, ",", id.index);
+}
+
+std::string RenderClosure(const ReportedClosure& reported,
+                          const bool with_picture) {
+  const LoopClosure& closure = reported.closure;
+  const ClosureEvidence& evidence = closure.evidence;
+  const Eigen::Vector2d& translation = closure.T_reference_query.translation();
+  std::string html = absl::StrFormat(
+      "<tr><td>%s</td><td>%s</td><td class=\"text\"><span class=\"%s\">%s"
+      "</span>",
+      IdText(closure.reference), IdText(closure.query),
+      reported.accepted ? "accepted" : "withdrawn",
+      reported.accepted ? "accepted" : "withdrawn");
+  if (!reported.reason.empty()) {
+    absl::StrAppend(&html, "<br/>", EscapeMarkup(reported.reason));
+  }
+  absl::StrAppendFormat(
+      &html,
+      "</td><td>%.2f</td><td>%d</td><td>%.1f</td><td>%.0f %%</td>"
+      "<td>%.1f %%</td><td>%.1f %%</td><td>%.3f</td><td>%.2f</td><td>%.2f</td>"
+      "<td>%.1f</td><td>",
+      closure.score, evidence.inliers, evidence.overlap_area,
+      100. * evidence.overlap, 100. * evidence.hit_ratio,
+      100. * evidence.contradiction_ratio, evidence.residual, translation.x(),
+      translation.y(), closure.T_reference_query.rotation() * 180. / M_PI);
+  if (with_picture) {
+    html +=
+        Zoomable(reported.png, absl::StrCat("submap ", IdText(closure.query),
+                                            " on ", IdText(closure.reference)));
+  }
+  return html + "</td></tr>\n";
+}
+
+std::string RenderClosures(const std::vector<ReportedClosure>& closures,
+                           const ReportOptions& options) {
+  if (closures.empty()) return "";
+  std::string rows;
+  int num_pictures = 0;
+  int num_left_out = 0;
+  size_t num_bytes = 0;
+  for (const ReportedClosure& closure : closures) {
+    const bool has_picture = !closure.png.empty();
+    const bool shows_picture =
+        has_picture && num_pictures < options.max_closure_pictures &&
+        num_bytes + closure.png.size() <= kMaxClosurePictureBytes;
+    if (shows_picture) {
+      ++num_pictures;
+      num_bytes += closure.png.size();
+    } else if (has_picture) {
+      ++num_left_out;
+    }
+    rows += RenderClosure(closure, shows_picture);
+  }
+  std::string html;
+  if (num_pictures > 0) {
+    html +=
+        "<p class=\"legend\">Pictures: walls of the reference "
+        "<span class=\"key\" style=\"background:#0d2673\"></span>blue, of the "
+        "query <span class=\"key\" style=\"background:#d91a1a\"></span>red, of "
+        "either in the free space of the other "
+        "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
+  }
+  if (num_left_out > 0) {
+    absl::StrAppend(&html, "<p class=\"legend\">", num_left_out,
+                    " pictures are left out to keep this page small.</p>\n");
+  }
+  absl::StrAppend(
+      &html,
+      "<div class=\"wide\"><table>\n<thead><tr><th>reference</th>"
+      "<th>query</th><th class=\"text\">status</th><th>score</th>"
+      "<th>inliers</th><th>overlap [m&#178;]</th><th>overlap</th><th>hits</th>"
+      "<th>contradictions</th><th>residual [m]</th><th>x [m]</th>"
+      "<th>y [m]</th><th>yaw [&#176;]</th><th>matched pair</th></tr></thead>\n"
+      "<tbody>\n",
+      rows, "</tbody></table></div>\n");
+  return Section("Closures", html);
+}
+
+std::string RenderHistograms(const std::vector<HistogramPlot>& histograms) {
+  if (histograms.empty()) return "";
+  std::string html = "<div class=\"columns\">\n";
+  for (const HistogramPlot& histogram : histograms) {
+    absl::StrAppend(&html, "<div>", RenderHistogram(histogram), "</div>\n");
+  }
+  return Section("Residuals", html + "</div>\n");
+}
+
+std::string RenderStages(const std::vector<StageTime>& stages) {
+  if (stages.empty()) return "";
+  double longest = 0.;
+  double sum = 0.;
+  for (const StageTime& stage : stages) {
+    longest = std::max(longest, stage.seconds);
+    sum += stage.seconds;
+  }
+  std::string html = "<div class=\"stages\"><table>\n";
+  for (const StageTime& stage : stages) {
+    const double percent =
+        longest > 0. ? std::max(0., 100. * stage.seconds / longest) : 0.;
+    absl::StrAppendFormat(
+        &html,
+        "<tr><th scope=\"row\" class=\"text\">%s</th><td>%.2f s</td>"
+        "<td><div class=\"bar\" style=\"width:%.1f%%\"></div></td></tr>\n",
+        EscapeMarkup(stage.stage), stage.seconds, percent);
+  }
+  absl::StrAppendFormat(&html,
+                        "<tr><th scope=\"row\" class=\"text\">together</th>"
+                        "<td>%.2f s</td><td></td></tr>\n",
+                        sum);
+  return Section("Time", html + "</table></div>\n");
+}
+
+std::string RenderOptions(const std::string& options) {
+  if (options.empty()) return "";
+  return Section("Options",
+                 absl::StrCat("<details><summary>The options in "
+                              "force, as Lua</summary>\n<pre>",
+                              EscapeMarkup(options), "</pre></details>\n"));
+}
+
+}  // namespace
+
+std::string RenderReport(const ReportContent& content,
+                         const ReportOptions& options) {
+  const std::string title = EscapeMarkup(content.title);
+  std::string subtitle;
+  if (!content.subtitle.empty()) {
+    subtitle = absl::StrCat("<p class=\"subtitle\">",
+                            EscapeMarkup(content.subtitle), "</p>\n");
+  }
+  return absl::StrCat(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, "
+      "initial-scale=1\"/>\n<title>",
+      title, "</title>\n<style>", kStyle, "</style>\n</head>\n<body>\n<header>",
+      "<h1>", title, "</h1>\n", subtitle, "</header>\n<main>\n",
+      RenderSummary(content), RenderMaps(content.maps),
+      RenderClosures(content.closures, options),
+      RenderHistograms(content.histograms), RenderStages(content.stages),
+      RenderOptions(content.options), "</main>\n</body>\n</html>\n");
+}
+
+absl::Status WriteReport(const std::string& directory,
+                         const ReportContent& content,
+                         const ReportOptions& options) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) {
+    return absl::UnavailableError(absl::StrCat(
+        "cannot make the directory ", directory, ": ", error.message()));
+  }
+  return WriteWholeFile(
+      (std::filesystem::path(directory) / "index.html").string(),
+      RenderReport(content, options));
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One self-contained HTML page that shows what was done to a map: no scripts
+// and nothing from the network, so that it can be mailed, archived and printed.
+// All texts may hold anything; they are escaped.
+
+#ifndef CARTOGRAPHER_SDF_REPORT_HTML_REPORT_H_
+#define CARTOGRAPHER_SDF_REPORT_HTML_REPORT_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "cartographer_sdf/closure/loop_closure.h"
+#include "cartographer_sdf/report/report_options.h"
+#include "cartographer_sdf/report/svg_plot.h"
+
+namespace cartographer_sdf {
+
+struct ReportedPicture {
+  std::string caption;
+  std::string png;
+};
+
+struct ReportedClosure {
+  LoopClosure closure;
+  // Went into the pose graph. Else it was withdrawn, by `reason`.
+  bool accepted = false;
+  std::string reason;
+  // Of the matched pair (DrawMatchedPair); empty where it was not drawn.
+  std::string png;
+};
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0.;
+};
+
+// What is empty is left out of the page.
+struct ReportContent {
+  std::string title;
+  std::string subtitle;
+  std::vector<std::pair<std::string, std::string>> summary;
+  // What the reader should know before trusting the result.
+  std::vector<std::string> warnings;
+  // Of the whole map, shown side by side: before and after.
+  std::vector<ReportedPicture> maps;
+  std::vector<ReportedClosure> closures;
+  std::vector<HistogramPlot> histograms;
+  std::vector<StageTime> stages;
+  // The options in force, as Lua.
+  std::string options;
+};
+
+// Pictures of closures beyond the limit of the options, or beyond what makes a
+// page of some 30 MB, are left out, the last ones first.
+[[nodiscard]] std::string RenderReport(const ReportContent& content,
+                                       const ReportOptions& options);
+
+// Writes `directory`/index.html; makes the directory where it is missing.
+[[nodiscard]] absl::Status WriteReport(const std::string& directory,
+                                       const ReportContent& content,
+                                       const ReportOptions& options);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_REPORT_HTML_REPORT_H_

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_REPORT_REPORT_OPTIONS_H_
+#define CARTOGRAPHER_SDF_REPORT_REPORT_OPTIONS_H_
+
+#include <string>
+
+namespace cartographer_sdf {
+
+struct ReportOptions {
+  // Longer side of the pictures of the whole map [pixels].
+  int map_picture_pixels = 1600;
+  // Longer side of the picture of a matched pair [pixels].
+  int closure_picture_pixels = 360;
+  // Closures beyond it are listed without a picture.
+  int max_closure_pictures = 60;
+};
+
+// A sentence that begins with the offending option, or nothing.
+[[nodiscard]] std::string Validate(const ReportOptions& options);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_REPORT_REPORT_OPTIONS_H_

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_
+#define CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_
+
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace cartographer_sdf {
+
+// Writes a temporary file beside `path` and renames it: at any time there is
+// the old file or the new one, never a part. Errors name the path.
+[[nodiscard]] absl::Status WriteWholeFile(const std::string& path,
+                                          const std::string& content);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/tools/flags.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_sdf/tools/subcommand.h"
+
+DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
+DEFINE_string(output, "", "The file to write.");
+DEFINE_string(report, "",
+              "Directory for a report as an HTML page (index.html); made where "
+              "it is missing. None if empty.");
+DEFINE_string(configuration_directory, "",
+              "Directories of configuration files, separated by commas, "
+              "searched before those that come with the program.");
+DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
+              "The configuration file; it may include others.");
+DEFINE_int32(threads, 0,
+             "Number of threads; 0 for as many as the machine has. The result "
+             "does not depend on it.");
+
+namespace cartographer_sdf {
+namespace {
+
+constexpr int kMaxThreads = 1024;
+
+std::vector<std::string> GivenDirectories() {
+  return absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+}
+
+}  // namespace
+
+std::vector<std::string> ConfigurationDirectories() {
+  std::vector<std::string> directories = GivenDirectories();
+  directories.push_back(CARTOGRAPHER_SDF_SOURCE_CONFIGURATION_DIRECTORY);
+  directories.push_back(CARTOGRAPHER_SDF_INSTALLED_CONFIGURATION_DIRECTORY);
+  return directories;
+}
+
+absl::StatusOr<Options> LoadOptionsOfFlags() {
+  // Else a misspelt one would be passed over for the defaults.
+  for (const std::string& directory : GivenDirectories()) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(directory, ignored)) {
+      return absl::NotFoundError(absl::StrCat("--configuration_directory ",
+                                              directory, " is no directory"));
+    }
+  }
+  return LoadOptions(ConfigurationDirectories(), FLAGS_configuration_basename);
+}
+
+absl::StatusOr<int> NumThreadsOfFlags() {
+  if (FLAGS_threads < 0 || FLAGS_threads > kMaxThreads) {
+    return UsageError(absl::StrCat("--threads must be from 0 to ", kMaxThreads,
+                                   ", it is ", FLAGS_threads));
+  }
+  if (FLAGS_threads > 0) return FLAGS_threads;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1,
+                    kMaxThreads);
+}
+
+}  // namespace cartographer_sdf

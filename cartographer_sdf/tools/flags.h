@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Flags that several subcommands share, and what they mean.
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
+#define CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/config/options.h"
+#include "gflags/gflags.h"
+
+DECLARE_string(input);
+DECLARE_string(output);
+DECLARE_string(report);
+DECLARE_string(configuration_directory);
+DECLARE_string(configuration_basename);
+DECLARE_int32(threads);
+
+namespace cartographer_sdf {
+
+// Where configuration files are looked for: first in those of
+// --configuration_directory, then where the program was built and installed.
+[[nodiscard]] std::vector<std::string> ConfigurationDirectories();
+
+// As of --configuration_directory and --configuration_basename.
+[[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
+
+// As of --threads; at least 1.
+[[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_FLAGS_H_

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_PROGRESS_H_
+#define CARTOGRAPHER_SDF_TOOLS_PROGRESS_H_
+
+#include <functional>
+#include <mutex>
+#include <ostream>
+#include <string>
+
+namespace cartographer_sdf {
+
+// E.g. "match [=====>     ]  45 %, 12 s left", at most `width` characters. How
+// long it will take is told where it can be known.
+[[nodiscard]] std::string FormatProgress(const std::string& stage,
+                                         double fraction,
+                                         double elapsed_seconds, int width);
+
+// A line on the terminal that says how far a stage is, once it takes longer
+// than a second; gone when the object is. Where stderr is no terminal, nothing.
+// Thread-safe.
+class Progress {
+ public:
+  explicit Progress(const std::string& stage);
+  // `terminal` may be null; `seconds` is a clock that does not go back.
+  Progress(const std::string& stage, std::ostream* terminal, int width,
+           std::function<double()> seconds);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress();
+
+  void Update(double fraction);
+  // For those who take a std::function; not to be used after this object.
+  [[nodiscard]] std::function<void(double)> Callback() {
+    return [this](const double fraction) { Update(fraction); };
+  }
+  // Since the beginning.
+  [[nodiscard]] double ElapsedSeconds() const;
+
+ private:
+  const std::string stage_;
+  std::ostream* const terminal_;
+  const int width_;
+  const std::function<double()> seconds_;
+  const double begin_;
+  std::mutex mutex_;
+  // When the line was last drawn, guarded by the mutex.
+  double last_drawn_ = 0.;
+  bool is_drawn_ = false;
+};
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_PROGRESS_H_

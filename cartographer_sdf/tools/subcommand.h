@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The subcommands of the program. To add one: a file with its function
+// "Subcommand Foo()", which names its flags and what runs; and its name in the
+// table of subcommand.cc.
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
+#define CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+
+namespace cartographer_sdf {
+
+struct Subcommand {
+  std::string name;
+  // One line, without a full stop.
+  std::string summary;
+  // The arguments after the name, e.g. "--input A.pbstream [--report DIR]".
+  std::string usage;
+  // What the help says beyond the summary; paragraphs are separated by an empty
+  // line.
+  std::string description;
+  // Names of gflags. Required ones must be given and not be empty; others that
+  // are in neither list are wrong usage.
+  std::vector<std::string> required_flags;
+  std::vector<std::string> optional_flags;
+  // Called once, with the flags set. An error's message becomes the one line on
+  // stderr and the exit code 1, or 2 for a UsageError.
+  absl::Status (*run)() = nullptr;
+};
+
+// In the order of the help.
+[[nodiscard]] std::vector<Subcommand> AllSubcommands();
+
+// The user is at fault, not the world: flags that do not go together, numbers
+// out of range.
+[[nodiscard]] absl::Status UsageError(const std::string& message);
+[[nodiscard]] bool IsUsageError(const absl::Status& status);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
