@@ -12,9 +12,10 @@ constexpr char kUsagePayload[] = "cartographer_sdf/usage";
 
 }  // namespace
 
+Subcommand Evaluate();
 Subcommand Info();
 
-std::vector<Subcommand> AllSubcommands() { return {Info()}; }
+std::vector<Subcommand> AllSubcommands() { return {Evaluate(), Info()}; }
 
 absl::Status UsageError(const std::string& message) {
   absl::Status status = absl::InvalidArgumentError(message);
