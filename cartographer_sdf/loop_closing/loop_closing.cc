@@ -181,6 +181,11 @@ void OptimizeAndWithdraw(const LoopClosingOptions& options,
           result->pose_graph.constraints.end(), outcome.constraints.begin(),
           outcome.constraints.end());
     }
+    // Nothing new: the map stays as it is, to the last bit.
+    if (result->pose_graph.constraints.size() ==
+        result->state.pose_graph.constraints.size()) {
+      return;
+    }
     result->optimizations.push_back(Optimize(
         result->optimization, frozen_trajectories, &result->pose_graph));
     if (on_progress) {
