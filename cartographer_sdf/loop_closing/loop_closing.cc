@@ -284,8 +284,9 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   LoopClosingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
 
-  absl::StatusOr<DescribedMap> map = DescribeMap(
-      options.place, path, executor, clock.Begin("read and describe"));
+  absl::StatusOr<DescribedMap> map =
+      DescribeMap(options.place, options.match, path, executor,
+                  clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   result.state = std::move(map->state);
   result.num_places = map->places.size();

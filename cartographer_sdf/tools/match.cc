@@ -45,8 +45,9 @@ absl::Status RunMatch() {
   const LoopClosingOptions& stages = options->loop_closing;
   const Executor executor = MakeExecutor(*num_threads);
   StageProgress progress;
-  const absl::StatusOr<DescribedMap> map = DescribeMap(
-      stages.place, FLAGS_input, executor, progress.Begin("read and describe"));
+  const absl::StatusOr<DescribedMap> map =
+      DescribeMap(stages.place, stages.match, FLAGS_input, executor,
+                  progress.Begin("read and describe"));
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   if (FLAGS_query.empty()) {
@@ -54,7 +55,7 @@ absl::Status RunMatch() {
                           executor, progress.Begin("match and verify"));
   } else {
     const absl::StatusOr<DescribedMap> query =
-        DescribeMap(stages.place, FLAGS_query, executor,
+        DescribeMap(stages.place, stages.match, FLAGS_query, executor,
                     progress.Begin("read and describe"));
     if (!query.ok()) return query.status();
     matches = MatchBetween(stages.match, map->places, query->places, executor,

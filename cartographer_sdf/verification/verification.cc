@@ -19,6 +19,9 @@ constexpr double kSameRotation = 0.1;
 constexpr double kDistinctDistance = 1.;
 constexpr double kDistinctRotation = 0.35;
 
+// More would only cost time: the best ones make the closest rivals.
+constexpr size_t kMaxNumSelfSimilarPoses = 3;
+
 // Standard deviation of a wall point's distance, by the grid and by local SLAM
 // [m].
 constexpr double kResidualSigma = 0.05;
@@ -176,17 +179,62 @@ std::optional<Candidate> Refine(const VerificationOptions& options,
   return Candidate{*std::move(registration), agreement};
 }
 
+bool IsDistinct(const Rigid2& a, const Rigid2& b,
+                const Eigen::Vector2d& middle) {
+  return !IsNear(a, b, middle, kDistinctDistance, kDistinctRotation);
+}
+
+std::vector<Candidate> RefineBest(const VerificationOptions& options,
+                                  const SurfaceModel& reference,
+                                  const SurfaceModel& query,
+                                  const std::vector<Rigid2>& hypotheses,
+                                  const Eigen::Vector2d& middle) {
+  std::vector<Candidate> candidates;
+  for (const Ranked& ranked :
+       RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
+    std::optional<Candidate> candidate =
+        Refine(options, reference, query, ranked.T_reference_query);
+    if (candidate) candidates.push_back(*std::move(candidate));
+  }
+  // Stable: of equal ones the first.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     return a.agreement.Quality() > b.agreement.Quality();
+                   });
+  return candidates;
+}
+
+// Where else the query may lie, if one of the submaps resembles itself.
+std::vector<Candidate> SelfSimilarRivals(const VerificationOptions& options,
+                                         const SurfaceModel& reference,
+                                         const SurfaceModel& query,
+                                         const Rigid2& T_reference_query) {
+  std::vector<Rigid2> guesses;
+  for (const Rigid2& similar : reference.self_similar_poses) {
+    guesses.push_back(similar * T_reference_query);
+    guesses.push_back(similar.Inverse() * T_reference_query);
+  }
+  for (const Rigid2& similar : query.self_similar_poses) {
+    guesses.push_back(T_reference_query * similar);
+    guesses.push_back(T_reference_query * similar.Inverse());
+  }
+  std::vector<Candidate> rivals;
+  for (const Rigid2& guess : guesses) {
+    std::optional<Candidate> rival = Refine(options, reference, query, guess);
+    if (rival) rivals.push_back(*std::move(rival));
+  }
+  return rivals;
+}
+
 double MarginOf(const std::vector<Candidate>& candidates, const Candidate& best,
                 const Eigen::Vector2d& middle) {
   double margin = kMaxMargin;
   for (const Candidate& rival : candidates) {
-    if (IsNear(rival.registration.T_reference_query,
-               best.registration.T_reference_query, middle, kDistinctDistance,
-               kDistinctRotation)) {
-      continue;
+    if (IsDistinct(rival.registration.T_reference_query,
+                   best.registration.T_reference_query, middle)) {
+      margin = std::min(margin,
+                        best.agreement.Quality() - rival.agreement.Quality());
     }
-    margin =
-        std::min(margin, best.agreement.Quality() - rival.agreement.Quality());
   }
   return std::max(margin, 0.);
 }
@@ -301,20 +349,10 @@ std::optional<Verification> VerifyHypotheses(
     const SurfaceModel& query, const std::vector<Rigid2>& hypotheses) {
   CHECK_EQ(Validate(options), "");
   const Eigen::Vector2d middle = Middle(query);
-  std::vector<Candidate> candidates;
-  for (const Ranked& ranked :
-       RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
-    std::optional<Candidate> candidate =
-        Refine(options, reference, query, ranked.T_reference_query);
-    if (candidate) candidates.push_back(*std::move(candidate));
-  }
+  const std::vector<Candidate> candidates =
+      RefineBest(options, reference, query, hypotheses, middle);
   if (candidates.empty()) return std::nullopt;
-  // The first of equal ones.
-  const Candidate& best =
-      *std::max_element(candidates.begin(), candidates.end(),
-                        [](const Candidate& a, const Candidate& b) {
-                          return a.agreement.Quality() < b.agreement.Quality();
-                        });
+  const Candidate& best = candidates.front();
   Verification verification;
   verification.T_reference_query = best.registration.T_reference_query;
   verification.information =
@@ -324,7 +362,39 @@ std::optional<Verification> VerifyHypotheses(
   verification.score =
       Score(options.score_weights, best.agreement, verification.margin);
   verification.verdict = Judge(options, verification);
+  if (verification.verdict == Verdict::kAccepted) {
+    // Only now, as few pairs get here.
+    verification.margin =
+        std::min(verification.margin,
+                 MarginOf(SelfSimilarRivals(options, reference, query,
+                                            verification.T_reference_query),
+                          best, middle));
+    verification.score =
+        Score(options.score_weights, best.agreement, verification.margin);
+    verification.verdict = Judge(options, verification);
+  }
   return verification;
+}
+
+std::vector<Rigid2> FindSelfSimilarPoses(
+    const VerificationOptions& options, const SurfaceModel& model,
+    const std::vector<Rigid2>& hypotheses) {
+  CHECK_EQ(Validate(options), "");
+  const Eigen::Vector2d middle = Middle(model);
+  std::vector<Rigid2> distinct, poses;
+  for (const Rigid2& hypothesis : hypotheses) {
+    if (IsDistinct(hypothesis, Rigid2(), middle))
+      distinct.push_back(hypothesis);
+  }
+  for (const Candidate& candidate :
+       RefineBest(options, model, model, distinct, middle)) {
+    const Rigid2& pose = candidate.registration.T_reference_query;
+    if (poses.size() < kMaxNumSelfSimilarPoses &&
+        IsDistinct(pose, Rigid2(), middle)) {
+      poses.push_back(pose);
+    }
+  }
+  return poses;
 }
 
 }  // namespace cartographer_sdf

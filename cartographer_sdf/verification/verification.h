@@ -120,11 +120,18 @@ struct Verification {
   double margin;
 };
 
-// None where no hypothesis is worth refining.
+// None where no hypothesis is worth refining. Rivals of the best pose are the
+// other hypotheses and what it becomes by self-similar poses of either submap.
 [[nodiscard]] std::optional<Verification> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query);
+
+// The poses among the hypotheses, refined, in which the submap resembles itself
+// and which are distinct from the identity; best first.
+[[nodiscard]] std::vector<Rigid2> FindSelfSimilarPoses(
+    const VerificationOptions& options, const SurfaceModel& model,
+    const std::vector<Rigid2>& hypotheses);
 
 }  // namespace cartographer_sdf
 
