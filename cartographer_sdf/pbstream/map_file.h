@@ -11,17 +11,16 @@
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
 
-#include <Eigen/Core>
 #include <functional>
 #include <map>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
@@ -57,10 +56,6 @@ using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
 [[nodiscard]] absl::StatusOr<MapState> ReadMap(
     const std::string& path, const SubmapCallback& on_submap = {},
     const ProgressCallback& on_progress = {});
-
-// Points of a node's range data in its gravity-aligned frame, the node frame of
-// the pose graph [m].
-using PointCloud2 = std::vector<Eigen::Vector2f>;
 
 // The filtered range data of the given nodes; a node without data is absent.
 [[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(

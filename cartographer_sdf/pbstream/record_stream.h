@@ -24,41 +24,60 @@ class RecordReader {
       const std::string& path);
 
   // Reads the next record; false at the end of the file, an error where the
-  // file is truncated or corrupted.
+  // file is truncated or corrupted. Memory grows with what was decompressed,
+  // not with what a length claims.
   [[nodiscard]] absl::StatusOr<bool> Read(std::string* record);
 
   // Bytes read and size of the file.
   [[nodiscard]] int64_t position() const { return position_; }
   [[nodiscard]] int64_t size() const { return size_; }
+  // Records read; the last one read has this number, counted from 1.
+  [[nodiscard]] int num_records() const { return num_records_; }
+  [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
   RecordReader() = default;
+
+  [[nodiscard]] absl::Status ReadBytes(int64_t count, char* bytes);
+  [[nodiscard]] absl::Status Inflate(int64_t compressed_size,
+                                     std::string* record);
+  [[nodiscard]] absl::Status Corrupted(const std::string& problem) const;
 
   std::string path_;
   std::ifstream file_;
   int64_t position_ = 0;
   int64_t size_ = 0;
+  int num_records_ = 0;
 };
 
 // Writes to a temporary file beside `path`; Commit() renames it. Destroyed
-// without a commit, it leaves nothing behind.
+// without a commit, it leaves nothing behind. The same records give the same
+// bytes.
 class RecordWriter {
  public:
+  // Refuses what it could not replace: a directory, a device, a file that is
+  // write-protected. A symbolic link is followed.
   [[nodiscard]] static absl::StatusOr<RecordWriter> Open(
       const std::string& path);
   RecordWriter(RecordWriter&& other) noexcept;
   RecordWriter& operator=(RecordWriter&&) = delete;
   ~RecordWriter();
 
+  // After an error, or after Commit(), the writer is done with.
   [[nodiscard]] absl::Status Write(const std::string& record);
   [[nodiscard]] absl::Status Commit();
 
  private:
   RecordWriter() = default;
 
+  [[nodiscard]] absl::Status CreateTemporaryFile();
+  [[nodiscard]] absl::Status WriteBytes(const std::string& bytes);
+
+  // As given, for messages; and what it stands for once links are followed.
   std::string path_;
+  std::string target_path_;
   std::string temporary_path_;
-  std::ofstream file_;
+  int file_descriptor_ = -1;
 };
 
 }  // namespace cartographer_sdf

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/pbstream/record_stream.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+constexpr uint64_t kMagic = 0x7b1d1f7b5bf501db;
+constexpr int kWordSize = 8;
+// Protocol buffers cannot be larger.
+constexpr int64_t kMaxRecordSize = std::numeric_limits<int32_t>::max();
+constexpr int kChunkSize = 1 << 16;
+// Of zlib: the largest window, with gzip header and trailer.
+constexpr int kGzipWindowBits = 15 + 16;
+
+uint64_t DecodeWord(const std::array<char, kWordSize>& bytes) {
+  uint64_t word = 0;
+  for (int i = kWordSize - 1; i >= 0; --i) {
+    word = word << 8 | static_cast<unsigned char>(bytes[i]);
+  }
+  return word;
+}
+
+std::string EncodeWord(uint64_t word) {
+  std::string bytes;
+  for (int i = 0; i < kWordSize; ++i) {
+    bytes.push_back(static_cast<char>(word & 0xff));
+    word >>= 8;
+  }
+  return bytes;
+}
+
+// zlib's gzip header has no time stamp by default, so this is deterministic.
+// The fastest level, as the host writes its files.
+std::string Gzip(const std::string& bytes) {
+  z_stream stream = {};
+  CHECK_EQ(deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits,
+                        /*memLevel=*/8, Z_DEFAULT_STRATEGY),
+           Z_OK);
+  std::string compressed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
+  stream.avail_out = static_cast<uInt>(compressed.size());
+  CHECK_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  compressed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return compressed;
+}
+
+}  // namespace
+
+absl::StatusOr<RecordReader> RecordReader::Open(const std::string& path) {
+  struct stat info = {};
+  if (stat(path.c_str(), &info) != 0) {
+    return absl::ErrnoToStatus(errno, absl::StrCat("cannot open ", path));
+  }
+  if (!S_ISREG(info.st_mode)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("cannot open ", path, ": not a regular file"));
+  }
+  RecordReader reader;
+  reader.path_ = path;
+  reader.size_ = info.st_size;
+  errno = 0;
+  reader.file_.open(path, std::ios::binary);
+  if (!reader.file_) {
+    return absl::ErrnoToStatus(errno == 0 ? EIO : errno,
+                               absl::StrCat("cannot open ", path));
+  }
+  std::array<char, kWordSize> word;
+  if (reader.size_ < kWordSize ||
+      !reader.ReadBytes(kWordSize, word.data()).ok() ||
+      DecodeWord(word) != kMagic) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, " is not a .pbstream file (",
+        reader.size_ == 0 ? "it is empty" : "bad magic number", ")"));
+  }
+  return reader;
+}
+
+absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
+  record->clear();
+  const int64_t remaining = size_ - position_;
+  if (remaining == 0) return false;
+  if (remaining < kWordSize) {
+    return absl::DataLossError(absl::StrCat(path_, " is truncated: ", remaining,
+                                            " bytes after record ",
+                                            num_records_, " are no record"));
+  }
+  std::array<char, kWordSize> word;
+  if (absl::Status status = ReadBytes(kWordSize, word.data()); !status.ok()) {
+    return status;
+  }
+  ++num_records_;
+  const uint64_t length = DecodeWord(word);
+  if (length > static_cast<uint64_t>(size_ - position_)) {
+    return absl::DataLossError(absl::StrCat(
+        path_, " is truncated: record ", num_records_, " has ", length,
+        " bytes, but only ", size_ - position_, " are left in the file"));
+  }
+  if (absl::Status status = Inflate(static_cast<int64_t>(length), record);
+      !status.ok()) {
+    return status;
+  }
+  return true;
+}
+
+absl::Status RecordReader::ReadBytes(const int64_t count, char* const bytes) {
+  if (!file_.read(bytes, count)) {
+    return absl::DataLossError(
+        absl::StrCat("cannot read ", path_, " beyond byte ", position_));
+  }
+  position_ += count;
+  return absl::OkStatus();
+}
+
+absl::Status RecordReader::Inflate(int64_t compressed_size,
+                                   std::string* const record) {
+  z_stream stream = {};
+  CHECK_EQ(inflateInit2(&stream, kGzipWindowBits), Z_OK);
+  const absl::Cleanup end_stream = [&stream] { inflateEnd(&stream); };
+  std::array<char, kChunkSize> input;
+  std::array<char, kChunkSize> output;
+  int result = Z_OK;
+  while (result == Z_OK) {
+    if (stream.avail_in == 0 && compressed_size > 0) {
+      const int64_t count = std::min<int64_t>(compressed_size, kChunkSize);
+      if (absl::Status status = ReadBytes(count, input.data()); !status.ok()) {
+        return status;
+      }
+      compressed_size -= count;
+      stream.next_in = reinterpret_cast<Bytef*>(input.data());
+      stream.avail_in = static_cast<uInt>(count);
+    }
+    stream.next_out = reinterpret_cast<Bytef*>(output.data());
+    stream.avail_out = kChunkSize;
+    result = inflate(&stream, Z_NO_FLUSH);
+    const size_t produced = kChunkSize - stream.avail_out;
+    if (static_cast<int64_t>(record->size() + produced) > kMaxRecordSize) {
+      return Corrupted("is larger than 2 GiB");
+    }
+    record->append(output.data(), produced);
+  }
+  // No input is left, none of the output either.
+  if (result == Z_BUF_ERROR) return Corrupted("ends too early");
+  if (result != Z_STREAM_END) {
+    return Corrupted(absl::StrCat("is no valid gzip data (",
+                                  stream.msg ? stream.msg : "no message", ")"));
+  }
+  if (stream.avail_in > 0 || compressed_size > 0) {
+    return Corrupted("has bytes after the end of its gzip data");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RecordReader::Corrupted(const std::string& problem) const {
+  return absl::DataLossError(absl::StrCat(path_, " is corrupted: record ",
+                                          num_records_, " ", problem));
+}
+
+absl::StatusOr<RecordWriter> RecordWriter::Open(const std::string& path) {
+  RecordWriter writer;
+  writer.path_ = path;
+  writer.target_path_ = path;
+  std::error_code error;
+  if (std::filesystem::is_symlink(path, error)) {
+    const std::filesystem::path target =
+        std::filesystem::weakly_canonical(path, error);
+    if (!error) writer.target_path_ = target.string();
+  }
+  if (absl::Status status = writer.CreateTemporaryFile(); !status.ok()) {
+    return status;
+  }
+  if (absl::Status status = writer.WriteBytes(EncodeWord(kMagic));
+      !status.ok()) {
+    return status;
+  }
+  return writer;
+}
+
+RecordWriter::RecordWriter(RecordWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      target_path_(std::move(other.target_path_)),
+      temporary_path_(std::move(other.temporary_path_)),
+      file_descriptor_(std::exchange(other.file_descriptor_, -1)) {}
+
+RecordWriter::~RecordWriter() {
+  if (file_descriptor_ < 0) return;
+  close(file_descriptor_);
+  unlink(temporary_path_.c_str());
+}
+
+absl::Status RecordWriter::CreateTemporaryFile() {
+  const std::string problem = absl::StrCat("cannot write ", path_);
+  struct stat existing = {};
+  const bool exists = stat(target_path_.c_str(), &existing) == 0;
+  if (exists && !S_ISREG(existing.st_mode)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(problem, ": not a regular file"));
+  }
+  if (exists && access(target_path_.c_str(), W_OK) != 0) {
+    return absl::ErrnoToStatus(errno, problem);
+  }
+  // The names of files that another writer of this process, or a dead process,
+  // left are skipped.
+  constexpr int kMaxAttempts = 1000;
+  for (int i = 0; i < kMaxAttempts; ++i) {
+    temporary_path_ = absl::StrCat(target_path_, ".tmp-", getpid(), "-", i);
+    file_descriptor_ = open(temporary_path_.c_str(),
+                            O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file_descriptor_ >= 0 || errno != EEXIST) break;
+  }
+  if (file_descriptor_ < 0) return absl::ErrnoToStatus(errno, problem);
+  if (exists && fchmod(file_descriptor_, existing.st_mode & 07777) != 0) {
+    return absl::ErrnoToStatus(errno, problem);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RecordWriter::WriteBytes(const std::string& bytes) {
+  size_t written = 0;
+  while (written < bytes.size()) {
+    const ssize_t count =
+        write(file_descriptor_, bytes.data() + written, bytes.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      return absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", path_));
+    }
+    written += static_cast<size_t>(count);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RecordWriter::Write(const std::string& record) {
+  CHECK_GE(file_descriptor_, 0) << "written after Commit()";
+  CHECK_LE(static_cast<int64_t>(record.size()), kMaxRecordSize);
+  const std::string compressed = Gzip(record);
+  if (absl::Status status = WriteBytes(EncodeWord(compressed.size()));
+      !status.ok()) {
+    return status;
+  }
+  return WriteBytes(compressed);
+}
+
+absl::Status RecordWriter::Commit() {
+  CHECK_GE(file_descriptor_, 0) << "committed twice";
+  const std::string problem = absl::StrCat("cannot write ", path_);
+  // Without it, a crash of the machine could leave the new name with no data.
+  if (fsync(file_descriptor_) != 0 && errno != EINVAL) {
+    return absl::ErrnoToStatus(errno, problem);
+  }
+  const bool closed = close(std::exchange(file_descriptor_, -1)) == 0;
+  if (!closed || rename(temporary_path_.c_str(), target_path_.c_str()) != 0) {
+    const absl::Status status = absl::ErrnoToStatus(errno, problem);
+    unlink(temporary_path_.c_str());
+    return status;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace cartographer_sdf
