@@ -34,7 +34,7 @@ int FlatIndex(const NavigationGrid& grid, const Eigen::Array2i& cell) {
   return cell.x() + grid.geometry.size.x() * cell.y();
 }
 
-// A reachable cell whose cost from all places is at least 0.8 of the largest
+// A reachable cell whose cost from all places is at least half of the largest
 // there is; any reachable cell while there are no places.
 Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
                            const std::vector<Place>& places,
@@ -53,7 +53,7 @@ Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
   }
   candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
                                   [&](const std::pair<float, int>& candidate) {
-                                    return candidate.first < 0.8f * largest;
+                                    return candidate.first < 0.5f * largest;
                                   }),
                    candidates.end());
   const int cell =

@@ -19,12 +19,12 @@ namespace cartographer_sdf {
 
 struct DriveOptions {
   // Way to go; the drive ends where it is reached [m].
-  double length = 300.;
+  double length = 360.;
   // Planned distance of the robot's centre to walls [m]. Following the plan
   // may cut a corner by up to 0.1 m.
   double clearance = 0.45;
   double speed = 0.5;      // [m/s]
-  double turn_rate = 0.6;  // [rad/s], at most
+  double turn_rate = 0.8;  // [rad/s], at most
   // Between two poses [s].
   double time_step = 0.05;
 };
