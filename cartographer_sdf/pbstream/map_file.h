@@ -6,7 +6,8 @@
 // record as it is. Files are streamed: memory holds the pose graph and one
 // record at a time, never the grids or the sensor data of the whole file.
 //
-// Any bytes give a map or one clear sentence, never a crash.
+// Any bytes give a map or one clear sentence, never a crash. What the host
+// would not load is an error: ids that do not match, odometry out of order, ...
 
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_MAP_FILE_H_
@@ -38,6 +39,7 @@ struct SubmapSummary {
 
 struct MapState {
   int format_version = 0;
+  // A submap or node may be here without a record of its own.
   PoseGraph pose_graph;
   std::map<SubmapId, SubmapSummary> submaps;
   int num_trajectories = 0;
@@ -49,7 +51,8 @@ struct MapState {
 // Fraction of the file that is done, in [0, 1].
 using ProgressCallback = std::function<void(double)>;
 // Called for each submap with a grid, in file order. The grid is in the submap
-// frame; a TSDF's cells become the occupancy that its distance implies.
+// frame; a TSDF's cells become the occupancy that its distance implies, see
+// grid_conversion.h.
 using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
                                           const OccupancyGrid&)>;
 
@@ -63,11 +66,20 @@ using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
     const ProgressCallback& on_progress = {});
 
 // Copies `input` to `output` with the poses of submaps, nodes and landmarks and
-// the constraints of `pose_graph`; everything else is copied byte for byte.
-// Constraints that the input had and `pose_graph` still has (in order, at its
-// beginning) keep their stored 3D pose and unknown fields. Writes a temporary
-// file beside the output and renames it when it is whole; input and output may
-// be the same path.
+// the constraints of `pose_graph`; every other record is copied byte for byte,
+// and so is the pose graph if nothing differs from ReadMap(input). Unknown
+// fields survive everywhere.
+//
+// - Poses that differ are written as the host writes optimised ones, others
+//   stay as they are, as do elements that `pose_graph` lacks.
+// - Constraints become those of `pose_graph`, in its order: the k-th of a
+//   submap, node and tag is the k-th that the input has of them, and keeps what
+//   does not differ, its pose in space above all; what the input has beyond
+//   that is dropped, what `pose_graph` has beyond that is new.
+//
+// The output appears when it is whole or not at all, and may be the input. An
+// error too if `pose_graph` has elements that the input lacks, or numbers that
+// are not finite. Odometry is not written.
 [[nodiscard]] absl::Status WriteMap(const std::string& input,
                                     const std::string& output,
                                     const PoseGraph& pose_graph,

@@ -15,7 +15,6 @@
 #include <limits>
 #include <utility>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
 #include "glog/logging.h"
 
@@ -47,25 +46,30 @@ std::string EncodeWord(uint64_t word) {
   return bytes;
 }
 
-// zlib's gzip header has no time stamp by default, so this is deterministic.
+ZlibStream NewInflateStream() {
+  ZlibStream stream(new z_stream(), [](z_stream* const stream) {
+    inflateEnd(stream);
+    delete stream;
+  });
+  CHECK_EQ(inflateInit2(stream.get(), kGzipWindowBits), Z_OK);
+  return stream;
+}
+
 // The fastest level, as the host writes its files.
-std::string Gzip(const std::string& bytes) {
-  z_stream stream = {};
-  CHECK_EQ(deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits,
+ZlibStream NewDeflateStream() {
+  ZlibStream stream(new z_stream(), [](z_stream* const stream) {
+    deflateEnd(stream);
+    delete stream;
+  });
+  CHECK_EQ(deflateInit2(stream.get(), Z_BEST_SPEED, Z_DEFLATED, kGzipWindowBits,
                         /*memLevel=*/8, Z_DEFAULT_STRATEGY),
            Z_OK);
-  std::string compressed(deflateBound(&stream, bytes.size()), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
-  stream.avail_out = static_cast<uInt>(compressed.size());
-  CHECK_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
-  compressed.resize(stream.total_out);
-  deflateEnd(&stream);
-  return compressed;
+  return stream;
 }
 
 }  // namespace
+
+RecordReader::RecordReader() : stream_(NewInflateStream()) {}
 
 absl::StatusOr<RecordReader> RecordReader::Open(const std::string& path) {
   struct stat info = {};
@@ -134,9 +138,9 @@ absl::Status RecordReader::ReadBytes(const int64_t count, char* const bytes) {
 
 absl::Status RecordReader::Inflate(int64_t compressed_size,
                                    std::string* const record) {
-  z_stream stream = {};
-  CHECK_EQ(inflateInit2(&stream, kGzipWindowBits), Z_OK);
-  const absl::Cleanup end_stream = [&stream] { inflateEnd(&stream); };
+  z_stream& stream = *stream_;
+  CHECK_EQ(inflateReset(&stream), Z_OK);
+  stream.avail_in = 0;
   std::array<char, kChunkSize> input;
   std::array<char, kChunkSize> output;
   int result = Z_OK;
@@ -171,10 +175,12 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
   return absl::OkStatus();
 }
 
-absl::Status RecordReader::Corrupted(const std::string& problem) const {
+absl::Status RecordReader::Corrupted(const absl::string_view problem) const {
   return absl::DataLossError(absl::StrCat(path_, " is corrupted: record ",
                                           num_records_, " ", problem));
 }
+
+RecordWriter::RecordWriter() : stream_(NewDeflateStream()) {}
 
 absl::StatusOr<RecordWriter> RecordWriter::Open(const std::string& path) {
   RecordWriter writer;
@@ -200,7 +206,8 @@ RecordWriter::RecordWriter(RecordWriter&& other) noexcept
     : path_(std::move(other.path_)),
       target_path_(std::move(other.target_path_)),
       temporary_path_(std::move(other.temporary_path_)),
-      file_descriptor_(std::exchange(other.file_descriptor_, -1)) {}
+      file_descriptor_(std::exchange(other.file_descriptor_, -1)),
+      stream_(std::move(other.stream_)) {}
 
 RecordWriter::~RecordWriter() {
   if (file_descriptor_ < 0) return;
@@ -249,10 +256,24 @@ absl::Status RecordWriter::WriteBytes(const std::string& bytes) {
   return absl::OkStatus();
 }
 
+// zlib's gzip header has no time stamp by default, so this is deterministic.
+std::string RecordWriter::Deflate(const std::string& record) {
+  z_stream& stream = *stream_;
+  CHECK_EQ(deflateReset(&stream), Z_OK);
+  std::string compressed(deflateBound(&stream, record.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(record.data()));
+  stream.avail_in = static_cast<uInt>(record.size());
+  stream.next_out = reinterpret_cast<Bytef*>(compressed.data());
+  stream.avail_out = static_cast<uInt>(compressed.size());
+  CHECK_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  compressed.resize(stream.total_out);
+  return compressed;
+}
+
 absl::Status RecordWriter::Write(const std::string& record) {
   CHECK_GE(file_descriptor_, 0) << "written after Commit()";
   CHECK_LE(static_cast<int64_t>(record.size()), kMaxRecordSize);
-  const std::string compressed = Gzip(record);
+  const std::string compressed = Deflate(record);
   if (absl::Status status = WriteBytes(EncodeWord(compressed.size()));
       !status.ok()) {
     return status;

@@ -10,12 +10,20 @@
 
 #include <cstdint>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+// zlib's z_stream.
+struct z_stream_s;
 
 namespace cartographer_sdf {
+
+// Made once per file: most records are tiny, and a stream is not.
+using ZlibStream = std::unique_ptr<z_stream_s, void (*)(z_stream_s*)>;
 
 class RecordReader {
  public:
@@ -31,20 +39,21 @@ class RecordReader {
   // Bytes read and size of the file.
   [[nodiscard]] int64_t position() const { return position_; }
   [[nodiscard]] int64_t size() const { return size_; }
-  // Records read; the last one read has this number, counted from 1.
-  [[nodiscard]] int num_records() const { return num_records_; }
   [[nodiscard]] const std::string& path() const { return path_; }
+  // The error that the record read last, counted from 1, has a problem:
+  // "PATH is corrupted: record 17 PROBLEM".
+  [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const;
 
  private:
-  RecordReader() = default;
+  RecordReader();
 
   [[nodiscard]] absl::Status ReadBytes(int64_t count, char* bytes);
   [[nodiscard]] absl::Status Inflate(int64_t compressed_size,
                                      std::string* record);
-  [[nodiscard]] absl::Status Corrupted(const std::string& problem) const;
 
   std::string path_;
   std::ifstream file_;
+  ZlibStream stream_;
   int64_t position_ = 0;
   int64_t size_ = 0;
   int num_records_ = 0;
@@ -68,16 +77,18 @@ class RecordWriter {
   [[nodiscard]] absl::Status Commit();
 
  private:
-  RecordWriter() = default;
+  RecordWriter();
 
   [[nodiscard]] absl::Status CreateTemporaryFile();
   [[nodiscard]] absl::Status WriteBytes(const std::string& bytes);
+  [[nodiscard]] std::string Deflate(const std::string& record);
 
   // As given, for messages; and what it stands for once links are followed.
   std::string path_;
   std::string target_path_;
   std::string temporary_path_;
   int file_descriptor_ = -1;
+  ZlibStream stream_;
 };
 
 }  // namespace cartographer_sdf
