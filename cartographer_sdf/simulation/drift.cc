@@ -38,9 +38,9 @@ std::vector<DriftedPose> AddDrift(const std::vector<DrivenPose>& drive,
                                   const DriftOptions& options,
                                   RandomNumbers* const random) {
   CHECK_EQ(Validate(options), "");
-  const double scale_error =
-      random->Chance(0.5) ? options.odometry_scale_error
-                          : -options.odometry_scale_error;
+  const double scale_error = random->Chance(0.5)
+                                 ? options.odometry_scale_error
+                                 : -options.odometry_scale_error;
   const double yaw_bias = random->Chance(0.5) ? options.odometry_yaw_bias
                                               : -options.odometry_yaw_bias;
   Rigid2 T_odometry_robot, T_local_robot;

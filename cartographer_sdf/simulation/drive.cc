@@ -118,14 +118,15 @@ std::vector<int> MakeItinerary(const int num_places) {
   return itinerary;
 }
 
-// Repeats the itinerary until the path is long enough.
+// Repeats the itinerary until the path is long enough, with what the robot
+// saves by cutting corners and turning short of dead ends.
 Path MakePath(const NavigationGrid& grid, const std::vector<Place>& trip,
               const DriveOptions& options) {
   const std::vector<int> itinerary =
       MakeItinerary(static_cast<int>(trip.size()));
   Path path;
   double length = 0.;
-  for (size_t k = 0; length < options.length; ++k) {
+  for (size_t k = 0; length < 1.5 * options.length; ++k) {
     const Place& from = trip[itinerary[k % itinerary.size()]];
     const Place& to = trip[itinerary[(k + 1) % itinerary.size()]];
     for (const Eigen::Vector2d& point :
@@ -161,9 +162,10 @@ std::vector<DrivenPose> Follow(const Path& path, const DriveOptions& options) {
     const double turn = std::clamp(kTurnGain * heading_error,
                                    -options.turn_rate, options.turn_rate) *
                         options.time_step;
-    const double advance = options.speed * options.time_step *
-                           std::max(0., std::cos(2. * std::min(
-                               std::abs(heading_error), M_PI / 4.)));
+    const double advance =
+        options.speed * options.time_step *
+        std::max(0.,
+                 std::cos(2. * std::min(std::abs(heading_error), M_PI / 4.)));
     T_world_robot = T_world_robot * Rigid2(advance, 0., turn);
     length += advance;
     poses.push_back({step * options.time_step, T_world_robot});
@@ -206,7 +208,7 @@ absl::StatusOr<std::vector<DrivenPose>> Drive(const FloorPlan& plan,
         "the floor plan has no connected free area of ", kMinReachableArea,
         " m^2 at least ", options.clearance, " m away from walls"));
   }
-  RandomNumbers random(seed);
+  RandomNumbers random(seed, RandomStream::kDrive);
   const std::vector<Place> trip =
       PlanRoundTrip(grid, options.length / kRoundTrips, &random);
   return Follow(MakePath(grid, trip, options), options);

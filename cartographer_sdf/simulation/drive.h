@@ -22,9 +22,9 @@ struct DriveOptions {
   double length = 360.;
   // Planned distance of the robot's centre to walls [m]. Following the plan
   // may cut a corner by up to 0.1 m.
-  double clearance = 0.45;
+  double clearance = 0.4;
   double speed = 0.5;      // [m/s]
-  double turn_rate = 0.8;  // [rad/s], at most
+  double turn_rate = 0.8;  // At most [rad/s].
   // Between two poses [s].
   double time_step = 0.05;
 };

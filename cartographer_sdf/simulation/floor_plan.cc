@@ -20,7 +20,7 @@ namespace cartographer_sdf {
 namespace {
 
 // Bounds the memory that a hostile header can ask for.
-constexpr int64_t kMaxPixels = 100'000'000;
+constexpr int64_t kMaxPixels = 25'000'000;
 // The free threshold of ROS's map_server, 0.196 occupied, rounded so that its
 // grey of the unknown (205 of 255) is not free.
 constexpr double kFreeBrightness = 0.81;
@@ -52,17 +52,19 @@ std::optional<int64_t> ReadPixel(const bool is_text, const int64_t maximum,
   return pixel;
 }
 
-// Calls visit(cell) for the cells of a square around a point, clipped.
+// Calls visit(cell, its centre from that of the box) for the cells of a box of
+// half the given sizes, clipped to the plan.
 template <typename Visitor>
-void VisitSquare(const CellGeometry& geometry, const Eigen::Vector2d& centre,
-                 const double half_side, const Visitor& visit) {
-  const Eigen::Vector2d half = Eigen::Vector2d::Constant(half_side);
-  const Eigen::Array2i minimum = geometry.CellAt(centre - half).max(0);
+void VisitBox(const CellGeometry& geometry, const Eigen::Vector2d& centre,
+              const Eigen::Vector2d& half_size, const Visitor& visit) {
+  const Eigen::Array2i minimum = geometry.CellAt(centre - half_size).max(0);
   const Eigen::Array2i maximum =
-      geometry.CellAt(centre + half).min(geometry.size - 1);
+      geometry.CellAt(centre + half_size).min(geometry.size - 1);
   for (int j = minimum.y(); j <= maximum.y(); ++j) {
     for (int i = minimum.x(); i <= maximum.x(); ++i) {
-      visit(Eigen::Array2i(i, j));
+      const Eigen::Vector2d p_world =
+          geometry.CellsToGrid(Eigen::Vector2d(i, j));
+      visit(i, j, p_world - centre);
     }
   }
 }
@@ -83,31 +85,32 @@ FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size, const double resolution) {
 void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                    const double yaw, const bool occupied,
                    FloorPlan* const plan) {
-  const Rigid2 T_rectangle_world = Rigid2(centre, yaw).Inverse();
-  VisitSquare(plan->geometry, centre, 0.5 * size.norm(),
-              [&](const Eigen::Array2i& cell) {
-                const Eigen::Vector2d p_rectangle =
-                    T_rectangle_world * plan->geometry.CellCentre(cell);
-                if ((p_rectangle.array().abs() <= 0.5 * size.array()).all()) {
-                  plan->occupied(cell.x(), cell.y()) = occupied;
-                }
-              });
+  const Eigen::Matrix2d R_world_rectangle =
+      Rigid2(centre, yaw).RotationMatrix();
+  const Eigen::Matrix2d R_rectangle_world = R_world_rectangle.transpose();
+  const Eigen::Vector2d half_size = 0.5 * size;
+  VisitBox(plan->geometry, centre, R_world_rectangle.cwiseAbs() * half_size,
+           [&](const int i, const int j, const Eigen::Vector2d& offset) {
+             const Eigen::Vector2d p_rectangle = R_rectangle_world * offset;
+             if ((p_rectangle.array().abs() <= half_size.array()).all()) {
+               plan->occupied(i, j) = occupied;
+             }
+           });
 }
 
 void FillDisc(const Eigen::Vector2d& centre, const double radius,
               const bool occupied, FloorPlan* const plan) {
-  VisitSquare(plan->geometry, centre, radius, [&](const Eigen::Array2i& cell) {
-    if ((plan->geometry.CellCentre(cell) - centre).norm() <= radius) {
-      plan->occupied(cell.x(), cell.y()) = occupied;
-    }
-  });
+  VisitBox(plan->geometry, centre, Eigen::Vector2d::Constant(radius),
+           [&](const int i, const int j, const Eigen::Vector2d& offset) {
+             if (offset.norm() <= radius) plan->occupied(i, j) = occupied;
+           });
 }
 
 absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
                                   const double resolution) {
-  if (!(resolution > 0.) || !std::isfinite(resolution)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the resolution of ", path, " must be positive"));
+  if (!(resolution >= 0.01 && resolution <= 1.)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the resolution of ", path, " must lie between 0.01 m and 1 m"));
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) return absl::NotFoundError(absl::StrCat("cannot open ", path));
@@ -121,7 +124,8 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
   const std::optional<int64_t> height = ReadNumber(kMaxPixels, &in);
   const std::optional<int64_t> maximum = ReadNumber(65535, &in);
   if (!width || !height || !maximum || *width < 1 || *height < 1 ||
-      *maximum < 1 || *width > kMaxPixels / *height || !std::isspace(in.get())) {
+      *maximum < 1 || *width > kMaxPixels / *height ||
+      !std::isspace(in.get())) {
     return absl::InvalidArgumentError(
         absl::StrCat("the PGM header of ", path, " is broken or too large"));
   }
@@ -129,9 +133,9 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
   for (int64_t k = 0; k != *width * *height; ++k) {
     const std::optional<int64_t> pixel = ReadPixel(is_text, *maximum, &in);
     if (!pixel) {
-      return absl::DataLossError(
-          absl::StrCat(path, " ends or is corrupted at pixel ", k, " of ",
-                       *width * *height));
+      return absl::DataLossError(absl::StrCat(path,
+                                              " ends or is corrupted at pixel ",
+                                              k, " of ", *width * *height));
     }
     occupied.push_back(static_cast<double>(*pixel) <
                        kFreeBrightness * static_cast<double>(*maximum));

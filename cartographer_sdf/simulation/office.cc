@@ -62,9 +62,9 @@ void AddRow(const AlignedBox2d& box, const Vector2d& outward,
     room.box.min()[along] = borders[k];
     room.box.max()[along] = borders[k + 1];
     const Vector2d middle =
-        room.box.center() +
-        0.5 * room.box.sizes().cwiseProduct(outward.cwiseAbs())
-                  .cwiseProduct(outward);
+        room.box.center() + 0.5 * room.box.sizes()
+                                      .cwiseProduct(outward.cwiseAbs())
+                                      .cwiseProduct(outward);
     room.wall_begin = room.wall_end = middle;
     room.wall_begin[along] = borders[k];
     room.wall_end[along] = borders[k + 1];
@@ -76,7 +76,9 @@ void AddRow(const AlignedBox2d& box, const Vector2d& outward,
 
 std::vector<Room> MakeRooms(const OfficeOptions& options,
                             RandomNumbers* const random) {
-  const auto depth = [&] { return random->Uniform(kMinRoomDepth, kMaxRoomDepth); };
+  const auto depth = [&] {
+    return random->Uniform(kMinRoomDepth, kMaxRoomDepth);
+  };
   const double west = depth(), east = options.width - depth();
   const double south = depth(), north = options.height - depth();
   const double corridor = options.corridor_width;
@@ -93,8 +95,8 @@ std::vector<Room> MakeRooms(const OfficeOptions& options,
   AddRow(box(0., south, west, north), Vector2d::UnitX(), none, random, &rooms);
   AddRow(box(east, south, options.width, north), -Vector2d::UnitX(), none,
          random, &rooms);
-  const AlignedBox2d core = box(west + corridor, south + corridor,
-                                east - corridor, north - corridor);
+  const AlignedBox2d core =
+      box(west + corridor, south + corridor, east - corridor, north - corridor);
   const double crossing =
       core.center().x() + random->Uniform(-0.1, 0.1) * core.sizes().x();
   for (const AlignedBox2d& half :
@@ -177,9 +179,9 @@ void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
   }
   for (int k = random->Index(4); k > 0; --k) {
     const double angle = random->Uniform(0., 2. * M_PI);
-    FillDisc(centre + (radius + 0.25) *
-                          Vector2d(std::cos(angle), std::sin(angle)),
-             0.2, true, plan);
+    FillDisc(
+        centre + (radius + 0.25) * Vector2d(std::cos(angle), std::sin(angle)),
+        0.2, true, plan);
   }
 }
 
@@ -209,7 +211,8 @@ void FurnishCorridor(const OfficeOptions& options, const Room& room,
   const double length = random->Uniform(0.5, 1.6);
   const double depth = random->Uniform(0.25, 0.45);
   const Vector2d centre =
-      room.wall_begin + random->Uniform(0.5 * length, wall_length - 0.5 * length) * along +
+      room.wall_begin +
+      random->Uniform(0.5 * length, wall_length - 0.5 * length) * along +
       0.5 * (options.wall_thickness + depth) * room.outward;
   if ((centre - door).norm() <
       0.5 * (options.door_width + length) + kDoorMargin) {
@@ -262,23 +265,23 @@ FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
   }
   for (const Room& room : rooms) {
     const double margin = 0.5 * options.door_width + options.wall_thickness;
-    const double fraction =
-        margin / (room.wall_end - room.wall_begin).norm();
+    const double fraction = margin / (room.wall_end - room.wall_begin).norm();
     const Vector2d door =
         room.wall_begin + random.Uniform(fraction, 1. - fraction) *
                               (room.wall_end - room.wall_begin);
     if (!random.Chance(options.closed_doors)) {
       const Vector2d across = options.wall_thickness * room.outward.cwiseAbs();
-      const Vector2d along = options.door_width *
-                             (Vector2d::Ones() - room.outward.cwiseAbs());
+      const Vector2d along =
+          options.door_width * (Vector2d::Ones() - room.outward.cwiseAbs());
       FillRectangle(door, 1.5 * across + along, 0., false, &plan);
     }
     FurnishRoom(options, room, door, &random, &plan);
-    if (random.Chance(0.4)) FurnishCorridor(options, room, door, &random, &plan);
+    if (random.Chance(0.4))
+      FurnishCorridor(options, room, door, &random, &plan);
   }
-  DrawWalls(AlignedBox2d(Vector2d::Zero(),
-                         Vector2d(options.width, options.height)),
-            2. * options.wall_thickness, &plan);
+  DrawWalls(
+      AlignedBox2d(Vector2d::Zero(), Vector2d(options.width, options.height)),
+      2. * options.wall_thickness, &plan);
   return plan;
 }
 

@@ -33,50 +33,45 @@ void VisitNeighbours(const Eigen::Array2i& size, const int cell,
   }
 }
 
-bool HasFreeNeighbour(const FloorPlan& plan, const int i, const int j) {
-  for (const std::array<int, 2>& offset : kNeighbours) {
-    const Eigen::Array2i cell(i + offset[0], j + offset[1]);
-    if (plan.geometry.Contains(cell) && !plan.occupied(cell.x(), cell.y())) {
-      return true;
+// Squared distance of each cell to the nearest marked one, or to the border, in
+// its row along x, in cells; cut off at `reach`.
+Eigen::ArrayXXf SquaredDistanceInRows(const BoolArray& marked,
+                                      const float reach) {
+  const Eigen::Index width = marked.rows();
+  Eigen::ArrayXXf squared(width, marked.cols());
+  for (Eigen::Index j = 0; j != marked.cols(); ++j) {
+    float distance = 0.f;
+    for (Eigen::Index i = 0; i != width; ++i) {
+      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
+      squared(i, j) = distance;
+    }
+    distance = 0.f;
+    for (Eigen::Index i = width - 1; i >= 0; --i) {
+      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
+      squared(i, j) = std::pow(std::min(squared(i, j), distance), 2.f);
     }
   }
-  return false;
+  return squared;
 }
 
-// Clearance at the resolution of the plan. Around each wall cell that borders
-// on free space, lowers all cells within reach.
+// Clearance at the resolution of the plan: the distance transform of
+// [Saito1994], along x, then along y within reach. What lies outside the plan
+// is occupied.
 Eigen::ArrayXXf ComputeClearance(const FloorPlan& plan) {
   const double resolution = plan.geometry.resolution;
-  const Eigen::Array2i size = plan.geometry.size;
-  const int reach =
-      static_cast<int>(NavigationGrid::kMaxClearance / resolution);
-  Eigen::ArrayXXf squared = Eigen::ArrayXXf::Constant(
-      size.x(), size.y(),
-      static_cast<float>(
-          std::pow(NavigationGrid::kMaxClearance / resolution, 2)));
-  for (int y = 0; y != size.y(); ++y) {
-    for (int x = 0; x != size.x(); ++x) {
-      if (!plan.occupied(x, y) || !HasFreeNeighbour(plan, x, y)) continue;
-      for (int j = std::max(0, y - reach);
-           j <= std::min(size.y() - 1, y + reach); ++j) {
-        const int begin = std::max(0, x - reach);
-        const int end = std::min(size.x() - 1, x + reach);
-        for (int i = begin; i <= end; ++i) {
-          const int distance_squared = (i - x) * (i - x) + (j - y) * (j - y);
-          squared(i, j) =
-              std::min(squared(i, j), static_cast<float>(distance_squared));
-        }
-      }
-    }
-  }
-  for (int y = 0; y != size.y(); ++y) {
-    for (int x = 0; x != size.x(); ++x) {
-      const float border =
-          static_cast<float>(std::min(std::min(x, size.x() - 1 - x),
-                                      std::min(y, size.y() - 1 - y))) +
-          0.5f;
-      squared(x, y) =
-          plan.occupied(x, y) ? 0.f : std::min(squared(x, y), border * border);
+  const double reach = NavigationGrid::kMaxClearance / resolution;
+  const Eigen::Index window = static_cast<Eigen::Index>(reach);
+  const Eigen::ArrayXXf in_rows =
+      SquaredDistanceInRows(plan.occupied, static_cast<float>(reach));
+  const Eigen::Index height = in_rows.cols();
+  Eigen::ArrayXXf squared(in_rows.rows(), height);
+  for (Eigen::Index j = 0; j != height; ++j) {
+    const auto border = static_cast<float>(std::min(j, height - 1 - j) + 1);
+    squared.col(j) = in_rows.col(j).min(border * border);
+    for (Eigen::Index k = std::max<Eigen::Index>(0, j - window);
+         k <= std::min(height - 1, j + window); ++k) {
+      const auto offset = static_cast<float>(k - j);
+      squared.col(j) = squared.col(j).min(in_rows.col(k) + offset * offset);
     }
   }
   return squared.sqrt() * static_cast<float>(resolution);
@@ -114,9 +109,9 @@ double ClearanceAt(const NavigationGrid& grid, const Eigen::Vector2d& point) {
 NavigationGrid MakeNavigationGrid(const FloorPlan& plan,
                                   const double min_clearance) {
   const Eigen::ArrayXXf clearance = ComputeClearance(plan);
-  const int factor = std::max(
-      1, static_cast<int>(std::lround(kNavigationResolution /
-                                      plan.geometry.resolution)));
+  const int factor =
+      std::max(1, static_cast<int>(std::lround(kNavigationResolution /
+                                               plan.geometry.resolution)));
   NavigationGrid grid;
   grid.geometry.resolution = factor * plan.geometry.resolution;
   grid.geometry.size = (plan.geometry.size / factor).max(1);
@@ -155,20 +150,21 @@ ShortestPaths FindShortestPaths(const NavigationGrid& grid,
     const auto [cost, cell] = queue.top();
     queue.pop();
     if (cost > paths.cost[cell]) continue;
-    VisitNeighbours(size, cell, [&, cost = cost, cell = cell](
-                                    const int next, const bool is_diagonal) {
-      if (!grid.reachable(next)) return;
-      const float crowding =
-          1.f - grid.clearance(next) /
-                    static_cast<float>(NavigationGrid::kMaxClearance);
-      const float step = resolution * (is_diagonal ? 1.41421356f : 1.f) *
-                         (1.f + 2.f * crowding);
-      if (cost + step < paths.cost[next]) {
-        paths.cost[next] = cost + step;
-        paths.parent[next] = cell;
-        queue.push({cost + step, next});
-      }
-    });
+    VisitNeighbours(
+        size, cell,
+        [&, cost = cost, cell = cell](const int next, const bool is_diagonal) {
+          if (!grid.reachable(next)) return;
+          const float crowding =
+              1.f - grid.clearance(next) /
+                        static_cast<float>(NavigationGrid::kMaxClearance);
+          const float step = resolution * (is_diagonal ? 1.41421356f : 1.f) *
+                             (1.f + 2.f * crowding);
+          if (cost + step < paths.cost[next]) {
+            paths.cost[next] = cost + step;
+            paths.parent[next] = cell;
+            queue.push({cost + step, next});
+          }
+        });
   }
   return paths;
 }

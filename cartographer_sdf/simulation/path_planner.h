@@ -17,8 +17,9 @@ namespace cartographer_sdf {
 // World frame as in FloorPlan; cells of about 0.1 m.
 struct NavigationGrid {
   CellGeometry geometry;
-  // Distance of the cell's centre to the nearest centre of an occupied cell or
-  // the border of the plan [m], exact below kMaxClearance and cut off there.
+  // Distance of the cell's centre to the nearest centre of an occupied cell of
+  // the plan, outside of which all are [m]; exact up to half a cell of the plan
+  // below kMaxClearance, and cut off there.
   Eigen::ArrayXXf clearance;
   // The largest connected set of cells with sufficient clearance.
   BoolArray reachable;

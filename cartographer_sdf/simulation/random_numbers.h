@@ -13,11 +13,15 @@
 
 namespace cartographer_sdf {
 
+// What the numbers are for: purposes that share a seed do not share numbers,
+// and one that needs more of them does not change the others.
+enum class RandomStream : uint32_t { kPlan, kDrive, kDrift, kLidar };
+
 class RandomNumbers {
  public:
-  // Different streams of one seed are independent.
-  explicit RandomNumbers(uint32_t seed, uint32_t stream = 0)
-      : engine_(seed * 2654435761u + stream * 40503u + 1u) {}
+  explicit RandomNumbers(uint32_t seed,
+                         RandomStream stream = RandomStream::kPlan)
+      : engine_(seed * 2654435761u + static_cast<uint32_t>(stream) * 40503u) {}
 
   // In [minimum, maximum).
   double Uniform(double minimum, double maximum) {

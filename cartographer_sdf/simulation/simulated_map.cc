@@ -24,8 +24,6 @@ constexpr int64_t kStartTime =
 constexpr double kIntraTranslationWeight = 5e2;
 constexpr double kIntraRotationWeight = 1.6e3;
 
-enum RandomStream : uint32_t { kDriveStream = 1, kDriftStream, kLidarStream };
-
 int64_t ToTicks(const double seconds) {
   return kStartTime +
          static_cast<int64_t>(std::llround(seconds * kTicksPerSecond));
@@ -61,8 +59,8 @@ PointCloud2 FilterVoxels(const std::vector<Eigen::Vector2f>& points,
 }
 
 SimulatedSubmap MakeSubmap(const std::vector<SimulatedNode>& nodes,
-                           const std::vector<Scan>& scans,
-                           const int first_node, const int end_node,
+                           const std::vector<Scan>& scans, const int first_node,
+                           const int end_node,
                            const SubmapGridOptions& options) {
   SimulatedSubmap submap;
   submap.first_node = first_node;
@@ -117,7 +115,7 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
   const absl::StatusOr<std::vector<DrivenPose>> drive =
       Drive(plan, options.drive, seed);
   if (!drive.ok()) return drive.status();
-  RandomNumbers drift_random(seed, kDriftStream);
+  RandomNumbers drift_random(seed, RandomStream::kDrift);
   const std::vector<DriftedPose> drifted =
       AddDrift(*drive, options.drift, &drift_random);
 
@@ -133,7 +131,7 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
 
   SimulatedMap map;
   std::vector<Scan> scans;
-  RandomNumbers lidar_random(seed, kLidarStream);
+  RandomNumbers lidar_random(seed, RandomStream::kLidar);
   for (const size_t k : kept) {
     const DrivenPose& pose = (*drive)[k];
     scans.push_back(
@@ -141,6 +139,10 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
     map.nodes.push_back(
         {ToTicks(pose.seconds), drifted[k].T_local_robot, pose.T_world_robot,
          FilterVoxels(scans.back().returns, options.local_slam.voxel_size)});
+    if (on_progress) {
+      on_progress(0.5 * static_cast<double>(scans.size()) /
+                  static_cast<double>(kept.size()));
+    }
   }
   for (size_t k = 0; k <= kept.back(); ++k) {
     map.odometry.push_back(
@@ -149,7 +151,7 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
   for (int k = 0; k != num_submaps; ++k) {
     map.submaps.push_back(MakeSubmap(map.nodes, scans, k * num_range_data,
                                      (k + 2) * num_range_data, options.grid));
-    if (on_progress) on_progress((k + 1.) / num_submaps);
+    if (on_progress) on_progress(0.5 + 0.5 * (k + 1.) / num_submaps);
   }
   return map;
 }

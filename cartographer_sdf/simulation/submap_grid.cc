@@ -70,8 +70,7 @@ class LogOddsGrid {
     ++num_scans_;
     const float hit = static_cast<float>(LogOdds(options.hit_probability));
     const float miss = static_cast<float>(LogOdds(options.miss_probability));
-    const std::vector<Beam> beams =
-        MakeBeams(posed, options.empty_beam_length);
+    const std::vector<Beam> beams = MakeBeams(posed, options.empty_beam_length);
     // Hits come first, so that no beam that passes by can undo them.
     for (const Beam& beam : beams) {
       if (!beam.is_hit) continue;
@@ -94,7 +93,8 @@ class LogOddsGrid {
         if (At(i, j).last_scan != 0) box.extend(Eigen::Vector2i(i, j));
       }
     }
-    if (box.isEmpty()) return UnknownGrid(CellGeometry{});
+    // The host's grids have a cell at least.
+    if (box.isEmpty()) box.extend(Eigen::Vector2i(0, 0));
     CellGeometry cropped = geometry_;
     cropped.size = box.sizes().array() + 1;
     cropped.T_submap_grid =

@@ -34,8 +34,9 @@ struct PosedScan {
   const Scan* scan = nullptr;
 };
 
-// Cropped to the known cells. Cell borders lie on multiples of the resolution
-// in the submap frame; probabilities are clamped to [0.1, 0.9].
+// Cropped to the known cells; one unknown cell where nothing was seen. Cell
+// borders lie on multiples of the resolution in the submap frame; probabilities
+// are clamped to [0.1, 0.9].
 [[nodiscard]] OccupancyGrid BuildSubmapGrid(const std::vector<PosedScan>& scans,
                                             const SubmapGridOptions& options);
 
