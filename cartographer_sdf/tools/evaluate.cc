@@ -259,7 +259,7 @@ absl::Status RunEvaluate() {
 Subcommand Evaluate() {
   return Subcommand{
       "evaluate",
-      "how far a map, or matches of its submaps, are from the truth",
+      "errors of a map and of matches against the truth",
       "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv]]",
       "Errors of scans against --relations, of all and of those more than 30 s "
       "apart; of nodes against --truth after a rigid alignment; and scores of "

@@ -70,7 +70,7 @@ TEST(ProgramTest, TellsItsVersion) {
   const ProgramResult version = RunTestProgram({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_THAT(version.output,
-              testing::MatchesRegex("cartographer_sdf [0-9.]+\n"));
+              ::testing::MatchesRegex("cartographer_sdf [0-9.]+\n"));
 }
 
 TEST(ProgramTest, RefusesWrongUsage) {
