@@ -118,7 +118,8 @@ struct Verification {
   double margin;
 };
 
-// None where no hypothesis is worth refining.
+// None where no hypothesis is worth refining. Independent of the order of the
+// hypotheses.
 [[nodiscard]] std::optional<Verification> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
