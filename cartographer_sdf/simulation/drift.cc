@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/simulation/drift.h"
+
+#include <cmath>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+
+std::string Validate(const DriftOptions& options) {
+  if (!(std::abs(options.odometry_scale_error) <= 0.5)) {
+    return "odometry_scale_error must lie within 0.5";
+  }
+  if (!(std::abs(options.odometry_yaw_bias) <= 1.)) {
+    return "odometry_yaw_bias must lie within 1 rad/m";
+  }
+  if (!(options.odometry_yaw_noise >= 0. && options.odometry_yaw_noise <= 1.)) {
+    return "odometry_yaw_noise must lie between 0 and 1 rad/sqrt(m)";
+  }
+  if (!(options.local_slam_fraction >= 0. &&
+        options.local_slam_fraction <= 1.)) {
+    return "local_slam_fraction must lie between 0 and 1";
+  }
+  if (!(options.local_slam_noise_translation >= 0. &&
+        options.local_slam_noise_translation <= 1.)) {
+    return "local_slam_noise_translation must lie between 0 m and 1 m";
+  }
+  if (!(options.local_slam_noise_rotation >= 0. &&
+        options.local_slam_noise_rotation <= 1.)) {
+    return "local_slam_noise_rotation must lie between 0 and 1 rad";
+  }
+  return "";
+}
+
+std::vector<DriftedPose> AddDrift(const std::vector<DrivenPose>& drive,
+                                  const DriftOptions& options,
+                                  RandomNumbers* const random) {
+  CHECK_EQ(Validate(options), "");
+  const double scale_error = random->Chance(0.5)
+                                 ? options.odometry_scale_error
+                                 : -options.odometry_scale_error;
+  const double yaw_bias = random->Chance(0.5) ? options.odometry_yaw_bias
+                                              : -options.odometry_yaw_bias;
+  Rigid2 T_odometry_robot, T_local_robot;
+  std::vector<DriftedPose> drifted;
+  for (size_t k = 0; k != drive.size(); ++k) {
+    if (k != 0) {
+      const Rigid2 T_previous_robot =
+          drive[k - 1].T_world_robot.Inverse() * drive[k].T_world_robot;
+      const double distance = T_previous_robot.translation().norm();
+      const double yaw_error =
+          yaw_bias * distance +
+          options.odometry_yaw_noise * std::sqrt(distance) * random->Normal();
+      const auto disturb = [&](const double fraction) {
+        return Rigid2(
+            (1. + fraction * scale_error) * T_previous_robot.translation(),
+            T_previous_robot.rotation() + fraction * yaw_error);
+      };
+      T_odometry_robot = T_odometry_robot * disturb(1.);
+      T_local_robot = T_local_robot * disturb(options.local_slam_fraction);
+    }
+    const double x = options.local_slam_noise_translation * random->Normal();
+    const double y = options.local_slam_noise_translation * random->Normal();
+    const double yaw = options.local_slam_noise_rotation * random->Normal();
+    drifted.push_back({T_odometry_robot, T_local_robot * Rigid2(x, y, yaw)});
+  }
+  return drifted;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/simulation/floor_plan.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Bounds the memory that a hostile header can ask for.
+constexpr int64_t kMaxPixels = 25'000'000;
+// The free threshold of ROS's map_server, 0.196 occupied, rounded so that its
+// grey of the unknown (205 of 255) is not free.
+constexpr double kFreeBrightness = 0.81;
+
+// Reads a decimal number of a PGM header or of P2 data; nothing where there is
+// none or it exceeds `maximum`.
+std::optional<int64_t> ReadNumber(const int64_t maximum, std::istream* in) {
+  while (std::isspace(in->peek()) || in->peek() == '#') {
+    if (in->get() == '#') {
+      while (in->good() && in->get() != '\n') {
+      }
+    }
+  }
+  if (!std::isdigit(in->peek())) return std::nullopt;
+  int64_t number = 0;
+  while (std::isdigit(in->peek())) {
+    number = 10 * number + (in->get() - '0');
+    if (number > maximum) return std::nullopt;
+  }
+  return number;
+}
+
+std::optional<int64_t> ReadPixel(const bool is_text, const int64_t maximum,
+                                 std::istream* in) {
+  if (is_text) return ReadNumber(maximum, in);
+  int64_t pixel = in->get();
+  if (maximum > 255) pixel = 256 * pixel + in->get();
+  if (!in->good() || pixel > maximum) return std::nullopt;
+  return pixel;
+}
+
+// Calls visit(cell, its centre from that of the box) for the cells of a box of
+// half the given sizes, clipped to the plan.
+template <typename Visitor>
+void VisitBox(const CellGeometry& geometry, const Eigen::Vector2d& centre,
+              const Eigen::Vector2d& half_size, const Visitor& visit) {
+  const Eigen::Array2i minimum = geometry.CellAt(centre - half_size).max(0);
+  const Eigen::Array2i maximum =
+      geometry.CellAt(centre + half_size).min(geometry.size - 1);
+  for (int j = minimum.y(); j <= maximum.y(); ++j) {
+    for (int i = minimum.x(); i <= maximum.x(); ++i) {
+      const Eigen::Vector2d p_world =
+          geometry.CellsToGrid(Eigen::Vector2d(i, j));
+      visit(i, j, p_world - centre);
+    }
+  }
+}
+
+}  // namespace
+
+FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size, const double resolution) {
+  CHECK_GT(resolution, 0.);
+  FloorPlan plan;
+  plan.geometry.resolution = resolution;
+  plan.geometry.size =
+      (size.array() / resolution - 1e-9).ceil().cast<int>().max(1);
+  plan.occupied = BoolArray::Constant(plan.geometry.size.x(),
+                                      plan.geometry.size.y(), false);
+  return plan;
+}
+
+void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                   const double yaw, const bool occupied,
+                   FloorPlan* const plan) {
+  const Eigen::Matrix2d R_world_rectangle =
+      Rigid2(centre, yaw).RotationMatrix();
+  const Eigen::Matrix2d R_rectangle_world = R_world_rectangle.transpose();
+  const Eigen::Vector2d half_size = 0.5 * size;
+  VisitBox(plan->geometry, centre, R_world_rectangle.cwiseAbs() * half_size,
+           [&](const int i, const int j, const Eigen::Vector2d& offset) {
+             const Eigen::Vector2d p_rectangle = R_rectangle_world * offset;
+             if ((p_rectangle.array().abs() <= half_size.array()).all()) {
+               plan->occupied(i, j) = occupied;
+             }
+           });
+}
+
+void FillDisc(const Eigen::Vector2d& centre, const double radius,
+              const bool occupied, FloorPlan* const plan) {
+  VisitBox(plan->geometry, centre, Eigen::Vector2d::Constant(radius),
+           [&](const int i, const int j, const Eigen::Vector2d& offset) {
+             if (offset.norm() <= radius) plan->occupied(i, j) = occupied;
+           });
+}
+
+absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
+                                  const double resolution) {
+  if (!(resolution >= 0.01 && resolution <= 1.)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the resolution of ", path, " must lie between 0.01 m and 1 m"));
+  }
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return absl::NotFoundError(absl::StrCat("cannot open ", path));
+  const int magic[2] = {in.get(), in.get()};
+  const bool is_text = magic[1] == '2';
+  if (magic[0] != 'P' || (!is_text && magic[1] != '5')) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, " is not a PGM image (P2 or P5)"));
+  }
+  const std::optional<int64_t> width = ReadNumber(kMaxPixels, &in);
+  const std::optional<int64_t> height = ReadNumber(kMaxPixels, &in);
+  const std::optional<int64_t> maximum = ReadNumber(65535, &in);
+  if (!width || !height || !maximum || *width < 1 || *height < 1 ||
+      *maximum < 1 || *width > kMaxPixels / *height ||
+      !std::isspace(in.get())) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the PGM header of ", path, " is broken or too large"));
+  }
+  std::vector<bool> occupied;  // Grows with the data, not with the header.
+  for (int64_t k = 0; k != *width * *height; ++k) {
+    const std::optional<int64_t> pixel = ReadPixel(is_text, *maximum, &in);
+    if (!pixel) {
+      return absl::DataLossError(absl::StrCat(path,
+                                              " ends or is corrupted at pixel ",
+                                              k, " of ", *width * *height));
+    }
+    occupied.push_back(static_cast<double>(*pixel) <
+                       kFreeBrightness * static_cast<double>(*maximum));
+  }
+  FloorPlan plan;
+  plan.geometry.resolution = resolution;
+  plan.geometry.size = Eigen::Array2i(*width, *height);
+  plan.occupied.resize(*width, *height);
+  for (int64_t j = 0; j != *height; ++j) {
+    for (int64_t i = 0; i != *width; ++i) {
+      plan.occupied(i, *height - 1 - j) = occupied[j * *width + i];
+    }
+  }
+  return plan;
+}
+
+}  // namespace cartographer_sdf

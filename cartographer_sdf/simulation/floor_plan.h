@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A building as a raster of walls, in the world frame [m]: the origin is the
+// lower left corner, x to the right, y up. World stands for the submap frame of
+// CellGeometry, and the grid frame is the world frame.
+
+#ifndef CARTOGRAPHER_SDF_SIMULATION_FLOOR_PLAN_H_
+#define CARTOGRAPHER_SDF_SIMULATION_FLOOR_PLAN_H_
+
+#include <Eigen/Core>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/grid/cell_geometry.h"
+#include "cartographer_sdf/grid/occupancy_grid.h"
+
+namespace cartographer_sdf {
+
+struct FloorPlan {
+  CellGeometry geometry;
+  // What stops light and robots; what lies outside the raster does, too.
+  BoolArray occupied;
+};
+
+// A plan of at least the given size [m] without any walls.
+[[nodiscard]] FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size,
+                                       double resolution);
+
+// Set the cells whose centres lie in the shape, clipped to the plan.
+void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                   double yaw, bool occupied, FloorPlan* plan);
+void FillDisc(const Eigen::Vector2d& centre, double radius, bool occupied,
+              FloorPlan* plan);
+
+// Reads a grey PGM image (P2 or P5) whose pixels are squares of `resolution`
+// [m]. As in ROS maps, nearly white is free; the grey of the unknown and the
+// black of walls are occupied.
+[[nodiscard]] absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
+                                                double resolution);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_SIMULATION_FLOOR_PLAN_H_

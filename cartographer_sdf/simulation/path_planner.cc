@@ -1,0 +1,199 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/simulation/path_planner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+constexpr double kNavigationResolution = 0.1;  // [m]
+
+constexpr std::array<std::array<int, 2>, 8> kNeighbours = {
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}}};
+
+// Calls visit(flat index, is_diagonal) for the neighbours inside the grid.
+template <typename Visitor>
+void VisitNeighbours(const Eigen::Array2i& size, const int cell,
+                     const Visitor& visit) {
+  const int x = cell % size.x(), y = cell / size.x();
+  for (const std::array<int, 2>& offset : kNeighbours) {
+    const int i = x + offset[0], j = y + offset[1];
+    if (i < 0 || j < 0 || i >= size.x() || j >= size.y()) continue;
+    visit(i + size.x() * j, offset[0] != 0 && offset[1] != 0);
+  }
+}
+
+// Squared distance of each cell to the nearest marked one, or to the border, in
+// its row along x, in cells; cut off at `reach`.
+Eigen::ArrayXXf SquaredDistanceInRows(const BoolArray& marked,
+                                      const float reach) {
+  const Eigen::Index width = marked.rows();
+  Eigen::ArrayXXf squared(width, marked.cols());
+  for (Eigen::Index j = 0; j != marked.cols(); ++j) {
+    float distance = 0.f;
+    for (Eigen::Index i = 0; i != width; ++i) {
+      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
+      squared(i, j) = distance;
+    }
+    distance = 0.f;
+    for (Eigen::Index i = width - 1; i >= 0; --i) {
+      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
+      squared(i, j) = std::pow(std::min(squared(i, j), distance), 2.f);
+    }
+  }
+  return squared;
+}
+
+// Clearance at the resolution of the plan: the distance transform of
+// [Saito1994], along x, then along y within reach. What lies outside the plan
+// is occupied.
+Eigen::ArrayXXf ComputeClearance(const FloorPlan& plan) {
+  const double resolution = plan.geometry.resolution;
+  const double reach = NavigationGrid::kMaxClearance / resolution;
+  const Eigen::Index window = static_cast<Eigen::Index>(reach);
+  const Eigen::ArrayXXf in_rows =
+      SquaredDistanceInRows(plan.occupied, static_cast<float>(reach));
+  const Eigen::Index height = in_rows.cols();
+  Eigen::ArrayXXf squared(in_rows.rows(), height);
+  for (Eigen::Index j = 0; j != height; ++j) {
+    const auto border = static_cast<float>(std::min(j, height - 1 - j) + 1);
+    squared.col(j) = in_rows.col(j).min(border * border);
+    for (Eigen::Index k = std::max<Eigen::Index>(0, j - window);
+         k <= std::min(height - 1, j + window); ++k) {
+      const auto offset = static_cast<float>(k - j);
+      squared.col(j) = squared.col(j).min(in_rows.col(k) + offset * offset);
+    }
+  }
+  return squared.sqrt() * static_cast<float>(resolution);
+}
+
+// Keeps the largest connected set only; the first one among equals.
+void KeepLargestComponent(BoolArray* const cells) {
+  const Eigen::Array2i size(cells->rows(), cells->cols());
+  std::vector<int> component(cells->size(), -1);
+  std::vector<int> largest;
+  for (int seed = 0; seed != cells->size(); ++seed) {
+    if (!(*cells)(seed) || component[seed] >= 0) continue;
+    std::vector<int> members = {seed};
+    component[seed] = seed;
+    for (size_t k = 0; k != members.size(); ++k) {
+      VisitNeighbours(size, members[k], [&](const int cell, bool) {
+        if (!(*cells)(cell) || component[cell] >= 0) return;
+        component[cell] = seed;
+        members.push_back(cell);
+      });
+    }
+    if (members.size() > largest.size()) largest = std::move(members);
+  }
+  cells->setConstant(false);
+  for (const int cell : largest) (*cells)(cell) = true;
+}
+
+double ClearanceAt(const NavigationGrid& grid, const Eigen::Vector2d& point) {
+  const Eigen::Array2i cell = grid.geometry.CellAt(point);
+  return grid.geometry.Contains(cell) ? grid.clearance(cell.x(), cell.y()) : 0.;
+}
+
+}  // namespace
+
+NavigationGrid MakeNavigationGrid(const FloorPlan& plan,
+                                  const double min_clearance) {
+  const Eigen::ArrayXXf clearance = ComputeClearance(plan);
+  const int factor =
+      std::max(1, static_cast<int>(std::lround(kNavigationResolution /
+                                               plan.geometry.resolution)));
+  NavigationGrid grid;
+  grid.geometry.resolution = factor * plan.geometry.resolution;
+  grid.geometry.size = (plan.geometry.size / factor).max(1);
+  grid.clearance.resize(grid.geometry.size.x(), grid.geometry.size.y());
+  for (int j = 0; j != grid.geometry.size.y(); ++j) {
+    for (int i = 0; i != grid.geometry.size.x(); ++i) {
+      const Eigen::Array2i cell =
+          plan.geometry.CellAt(grid.geometry.CellCentre({i, j}))
+              .min(plan.geometry.size - 1);
+      grid.clearance(i, j) = clearance(cell.x(), cell.y());
+    }
+  }
+  grid.reachable = grid.clearance >= static_cast<float>(min_clearance);
+  KeepLargestComponent(&grid.reachable);
+  return grid;
+}
+
+ShortestPaths FindShortestPaths(const NavigationGrid& grid,
+                                const Eigen::Array2i& source) {
+  CHECK(grid.geometry.Contains(source) &&
+        grid.reachable(source.x(), source.y()));
+  const Eigen::Array2i size = grid.geometry.size;
+  const int num_cells = size.prod();
+  ShortestPaths paths;
+  paths.cost.assign(num_cells, std::numeric_limits<float>::infinity());
+  paths.parent.assign(num_cells, -1);
+  // Ties are broken by the index of the cell.
+  using Entry = std::pair<float, int>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
+  const int first = source.x() + size.x() * source.y();
+  paths.cost[first] = 0.f;
+  paths.parent[first] = first;
+  queue.push({0.f, first});
+  const float resolution = static_cast<float>(grid.geometry.resolution);
+  while (!queue.empty()) {
+    const auto [cost, cell] = queue.top();
+    queue.pop();
+    if (cost > paths.cost[cell]) continue;
+    VisitNeighbours(
+        size, cell,
+        [&, cost = cost, cell = cell](const int next, const bool is_diagonal) {
+          if (!grid.reachable(next)) return;
+          const float crowding =
+              1.f - grid.clearance(next) /
+                        static_cast<float>(NavigationGrid::kMaxClearance);
+          const float step = resolution * (is_diagonal ? 1.41421356f : 1.f) *
+                             (1.f + 2.f * crowding);
+          if (cost + step < paths.cost[next]) {
+            paths.cost[next] = cost + step;
+            paths.parent[next] = cell;
+            queue.push({cost + step, next});
+          }
+        });
+  }
+  return paths;
+}
+
+std::vector<Eigen::Vector2d> SmoothPath(const NavigationGrid& grid,
+                                        const ShortestPaths& paths,
+                                        const Eigen::Array2i& target,
+                                        const double min_clearance) {
+  CHECK(grid.geometry.Contains(target));
+  const int stride = grid.geometry.size.x();
+  int cell = target.x() + stride * target.y();
+  CHECK_GE(paths.parent[cell], 0);
+  std::vector<Eigen::Vector2d> path;
+  while (true) {
+    path.push_back(grid.geometry.CellCentre({cell % stride, cell / stride}));
+    if (paths.parent[cell] == cell) break;
+    cell = paths.parent[cell];
+  }
+  std::reverse(path.begin(), path.end());
+  // Spreads over about the square root of it in cells, half a metre.
+  constexpr int kIterations = 30;
+  for (int iteration = 0; iteration != kIterations; ++iteration) {
+    for (size_t k = 1; k + 1 < path.size(); ++k) {
+      const Eigen::Vector2d smoother =
+          0.25 * path[k - 1] + 0.5 * path[k] + 0.25 * path[k + 1];
+      if (ClearanceAt(grid, smoother) >= min_clearance) path[k] = smoother;
+    }
+  }
+  return path;
+}
+
+}  // namespace cartographer_sdf

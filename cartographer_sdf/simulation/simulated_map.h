@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What Cartographer's local SLAM would have saved of a drive through a floor
+// plan with loop closing switched off, and where it really was. One trajectory,
+// number 0.
+
+#ifndef CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_
+#define CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/pbstream/point_cloud.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/simulation/drift.h"
+#include "cartographer_sdf/simulation/drive.h"
+#include "cartographer_sdf/simulation/floor_plan.h"
+#include "cartographer_sdf/simulation/lidar.h"
+#include "cartographer_sdf/simulation/submap_grid.h"
+
+namespace cartographer_sdf {
+
+struct LocalSlamOptions {
+  // A submap holds twice as many scans, and shares half of them with the next.
+  int num_range_data = 60;
+  // A scan becomes a node when the robot has moved or turned this much since
+  // the last one [m, rad].
+  double node_distance = 0.2;
+  double node_rotation = 10. * M_PI / 180.;
+  // Side of the squares of which a node keeps one point each [m].
+  double voxel_size = 0.05;
+};
+
+struct SimulationOptions {
+  DriveOptions drive;
+  LidarOptions lidar;
+  DriftOptions drift;
+  LocalSlamOptions local_slam;
+  SubmapGridOptions grid;
+};
+
+[[nodiscard]] std::string Validate(const LocalSlamOptions& options);
+[[nodiscard]] std::string Validate(const SimulationOptions& options);
+
+// Time: as Node::time. Gravity alignment is the identity everywhere, so node,
+// robot and tracking frame are one.
+struct SimulatedNode {
+  int64_t time = 0;
+  Rigid2 T_local_node;
+  Rigid2 T_world_node;
+  PointCloud2 points;  // In the node frame.
+};
+
+struct SimulatedSubmap {
+  // Nodes [first_node, end_node) were inserted.
+  int first_node = 0;
+  int end_node = 0;
+  // As the host's: at the first node, with the orientation of the local frame.
+  Rigid2 T_local_submap;
+  // From the true pose of the first node.
+  Rigid2 T_world_submap;
+  OccupancyGrid grid;
+};
+
+struct SimulatedOdometry {
+  int64_t time = 0;
+  Rigid2 T_odometry_node;
+};
+
+// All submaps are finished, and each node is in one submap at least.
+struct SimulatedMap {
+  std::vector<SimulatedNode> nodes;
+  std::vector<SimulatedSubmap> submaps;
+  // Covers the times of all nodes.
+  std::vector<SimulatedOdometry> odometry;
+};
+
+// The same map for the same arguments; another seed is another session in the
+// same building: other places, drift and noise. Errors: invalid options, a plan
+// without room for the robot, a drive too short for a submap. The progress is a
+// fraction of the time needed.
+[[nodiscard]] absl::StatusOr<SimulatedMap> Simulate(
+    const FloorPlan& plan, const SimulationOptions& options, uint32_t seed,
+    const ProgressCallback& on_progress = {});
+
+// The constraints of local SLAM: each node to the submaps it was inserted in.
+[[nodiscard]] std::vector<Constraint> IntraSubmapConstraints(
+    const SimulatedMap& map);
+
+// Writes the map with its drifted poses as a .pbstream that Cartographer loads,
+// and the truth as kind,trajectory,index,x,y,yaw: poses of submaps and nodes in
+// the world. Either file is written whole or not at all.
+[[nodiscard]] absl::Status WriteSimulatedMap(const SimulatedMap& map,
+                                             const std::string& map_path,
+                                             const std::string& truth_path);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/tools/simulate.h"
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/simulation/floor_plan.h"
+#include "cartographer_sdf/simulation/office.h"
+#include "cartographer_sdf/simulation/simulated_map.h"
+
+namespace cartographer_sdf {
+
+absl::Status RunSimulate(const SimulateArguments& arguments,
+                         const ProgressCallback& on_progress) {
+  const absl::StatusOr<FloorPlan> plan =
+      arguments.plan_path
+          ? ReadPgm(*arguments.plan_path, arguments.plan_resolution)
+          : MakeOffice(OfficeOptions{}, arguments.plan_seed);
+  if (!plan.ok()) return plan.status();
+  const absl::StatusOr<SimulatedMap> map =
+      Simulate(*plan, SimulationOptions{}, arguments.drive_seed, on_progress);
+  if (!map.ok()) return map.status();
+  return WriteSimulatedMap(*map, arguments.output_path, arguments.truth_path);
+}
+
+}  // namespace cartographer_sdf
