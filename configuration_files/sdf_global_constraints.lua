@@ -1,7 +1,216 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 -- SPDX-License-Identifier: Apache-2.0
 
+-- All options of cartographer_sdf with their defaults, good for a lidar of 20
+-- to 40 m and submaps of 5 cm. To change some, write a file beside it:
+--
+--   include "sdf_global_constraints.lua"
+--   SDF_GLOBAL_CONSTRAINTS.loop_closing.match.verification.min_score = 5.
+--   return SDF_GLOBAL_CONSTRAINTS
+--
+-- and name it by --configuration_directory and --configuration_basename.
+
 SDF_GLOBAL_CONSTRAINTS = {
+  loop_closing = {
+    -- How a submap is described.
+    place = {
+      field = {
+        -- Cells above are walls. Cartographer's hits start at 0.55.
+        occupied_probability = 0.5,
+        -- [m] How far the distance field reaches beyond the submap.
+        padding_meters = 0.6,
+      },
+      keypoint = {
+        -- [cells] Gaussian before differentiation. Larger: fewer, smoother
+        -- keypoints.
+        smoothing_sigma_cells = 3.,
+        -- [1 / cells^2] Least |determinant of the Hessian|. Larger: fewer, more
+        -- distinctive keypoints.
+        detection_threshold = 0.0025,
+        -- [cells] Least distance between keypoints, along either axis.
+        non_maximum_suppression_cells = 4,
+        -- [cells] No keypoints this near to where free space meets the unknown.
+        unobserved_border_cells = 1.5,
+      },
+      descriptor = {
+        -- [m] Window around a keypoint. Larger: more distinctive, less often
+        -- the same from another side.
+        radius_meters = 0.8,
+        -- Bins of the histogram of relative gradient orientations.
+        num_bins = 17,
+        -- Bins of the histogram that finds the dominant orientation.
+        num_orientation_bins = 36,
+        -- [1 / mm] Of the mean distance beside a histogram of length 1. Larger:
+        -- places of other width are told apart more sharply.
+        distance_weight = 0.002,
+        -- Standard deviation of the window's Gaussian, of the radius.
+        gaussian_sigma_ratio = 0.5,
+        -- Peaks of the orientation histogram above this fraction of the highest
+        -- are features of their own. 1: the highest alone.
+        secondary_orientation_ratio = 1.,
+      },
+    },
+    -- How a pair of submaps is matched.
+    match = {
+      -- "sdf", or "paper": ratio test, RANSAC and the number of inliers, as
+      -- published (see paper.lua).
+      method = "sdf",
+      correspondence = {
+        -- Per feature, nearest in descriptor space. Larger: more recall, slower.
+        num_neighbours = 5,
+        -- Whether features without a clearly nearest neighbour are dropped.
+        use_ratio_test = false,
+        max_ratio = 0.75,
+        -- [m] Features whose distance to walls differs by more do not match.
+        max_clearance_difference_meters = 0.2,
+      },
+      -- Poses that many pairs of correspondences vote for.
+      hypotheses = {
+        -- Larger: more recall, slower.
+        max_num_hypotheses = 60,
+        -- The best ones that are paired. Time grows with the square.
+        max_num_correspondences = 700,
+        -- [m] Tolerance of the distance between two keypoints.
+        max_length_difference_meters = 0.2,
+        -- [rad] Tolerance of the keypoints' orientations.
+        max_orientation_difference = 0.44,
+        -- [m] Nearer keypoints fix no rotation.
+        min_baseline_meters = 1.5,
+        -- [m], [rad] Poses this near count as one.
+        cluster_distance_meters = 0.5,
+        cluster_rotation = 0.1,
+      },
+      verification = {
+        -- Which hypotheses are worth refining: first on few wall points, then
+        -- on more.
+        ranking = {
+          num_coarse_points = 40,
+          num_fine_points = 150,
+          num_coarse_survivors = 20,
+          num_refined = 5,
+          -- [m] Walls this near to each other agree.
+          hit_distance_meters = 0.3,
+          -- [m] Walls this deep in the other's free space contradict.
+          contradiction_distance_meters = 0.5,
+          -- A contradiction counts so many times as much as a hit.
+          contradiction_weight = 2.,
+          -- (hits - weight * contradictions) / points. Larger: faster, less
+          -- recall.
+          min_coarse_score = 0.3,
+          min_fine_score = 0.45,
+        },
+        -- Refinement of a pose on the distance fields.
+        registration = {
+          num_iterations = 12,
+          -- [m] Residuals beyond it hardly count, in the first and in the last
+          -- iteration.
+          initial_kernel_scale_meters = 0.4,
+          final_kernel_scale_meters = 0.15,
+          -- Wall points of each submap. Larger: more precise, slower.
+          max_num_points = 300,
+        },
+        -- The final judgement, as in ranking.
+        agreement = {
+          hit_distance_meters = 0.15,
+          contradiction_distance_meters = 0.25,
+        },
+        -- Wall points of each submap for it.
+        num_agreement_points = 1000,
+        -- Score = log-odds of being right. Learned on Intel, ACES, Killian
+        -- Court and Willow Garage; see docs/results.
+        score_weights = {
+          mean_hit_ratio = 7.8,
+          mean_contradiction_ratio = -91.,
+          max_contradiction_ratio = -15.,
+          log_overlap_area = 0.76,
+          log_overlap = 2.5,
+          sqrt_scatter_eigenvalue = 20.,
+          margin = 18.,
+          bias = -18.5,
+        },
+        -- [m^2] Least area seen by both.
+        min_overlap_area = 10.,
+        -- Largest fraction of wall points in the other's free space.
+        max_contradiction_ratio = 0.1,
+        -- 0: walls face one way only (a corridor); 0.5: all ways.
+        min_scatter_eigenvalue = 0.03,
+        -- Least score. Larger: fewer wrong matches, fewer matches.
+        min_score = 3.,
+        -- A pair with a second pose that is nearly as good is ambiguous. Larger:
+        -- more pairs are.
+        min_margin = 0.05,
+      },
+      -- [m] Keypoints this near under the final pose are reported as inliers.
+      inlier_distance_meters = 0.3,
+      -- These only for method "paper".
+      ransac = {
+        max_num_iterations = 2000,
+        -- [m]
+        inlier_distance_meters = 0.3,
+        min_baseline_meters = 1.,
+      },
+      min_num_inliers = 12,
+      -- Of everything random, which is RANSAC alone.
+      seed = 42,
+    },
+    -- Submaps of one trajectory are matched from this difference of their
+    -- indices on; nearer ones share scans.
+    min_index_gap = 3,
+    -- Which closures believe each other, by cycles with the odometry between.
+    consistency = {
+      -- [rad / sqrt(m)] Drift of local SLAM. Larger: fewer contradictions.
+      rotation_sigma_per_sqrt_meter = 0.01,
+      -- [m / m]
+      translation_sigma_per_meter = 0.01,
+      -- [m], [rad] Of a closure.
+      closure_translation_sigma_meters = 0.15,
+      closure_rotation_sigma = 0.02,
+      -- Cycles that fail to close by more standard deviations contradict.
+      max_mahalanobis_distance = 4.03,
+      -- [m] Cycles less certain than this are not asked.
+      max_cycle_sigma_meters = 1.,
+      -- A closure that no other supports needs this score.
+      min_unsupported_score = 5.,
+      -- Sum of the scores that counts as support.
+      min_support = 3.,
+    },
+    -- How a closure becomes constraints between submaps and nodes.
+    lifting = {
+      -- Nodes of each of the two submaps. Larger: a stronger, smoother pull.
+      num_nodes_per_submap = 5,
+      -- As Cartographer's POSE_GRAPH.constraint_builder.loop_closure_*.
+      translation_weight = 1.1e4,
+      rotation_weight = 1e5,
+      -- [m], [rad] How far a node may be off within its submap.
+      translation_sigma_meters = 0.1,
+      rotation_sigma = 0.02,
+      -- A scan that would move its node farther, ...
+      max_num_sigmas = 3.,
+      -- ... or that has fewer points on walls, gives no constraint.
+      min_hit_ratio = 0.6,
+    },
+    -- As Cartographer's POSE_GRAPH.optimization_problem, with its defaults. Use
+    -- the weights that the map was made with: others bend it.
+    optimization = {
+      huber_scale = 1e1,
+      local_slam_pose_translation_weight = 1e5,
+      local_slam_pose_rotation_weight = 1e5,
+      odometry_translation_weight = 1e5,
+      odometry_rotation_weight = 1e5,
+      max_num_iterations = 200,
+    },
+    -- Whether the odometry weights are taken from the map instead, whose poses
+    -- show with which ones it was optimised.
+    infer_odometry_weights = true,
+    -- A closure that the optimised map contradicts by more is taken out, and
+    -- the rest optimised again.
+    withdrawal = {
+      -- [m], [rad]
+      max_translation_error_meters = 0.5,
+      max_rotation_error = 0.1,
+      max_num_rounds = 10,
+    },
+  },
   -- The HTML page that shows what was done.
   report = {
     -- [pixels] Longer side of the pictures of the whole map.

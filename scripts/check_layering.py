@@ -30,9 +30,10 @@ CORE = {
                     "matching", "verification", "closure"],
 }
 OFFLINE = {
-    "pose_graph": ["geometry", "grid", "closure"],
+    "pose_graph": ["geometry", "grid", "field", "verification", "closure"],
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
-    "config": [*CORE, "pose_graph", "report/report_options.h"],
+    "loop_closing": [*CORE, "pose_graph", "pbstream"],
+    "config": [*CORE, "pose_graph", "loop_closing", "report/report_options.h"],
     "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream"],
     "evaluation": [*CORE, "pose_graph", "pbstream"],
     "report": [*CORE, "pose_graph", "pbstream", "evaluation"],

@@ -153,7 +153,7 @@ std::string Validate(const ConsistencyOptions& options) {
   }
   if (!(options.max_mahalanobis_distance > 0. &&
         options.max_cycle_sigma_meters > 0.)) {
-    return "consistency.max_mahalanobis_distance and max_cycle_sigma_meters "
+    return "max_mahalanobis_distance and max_cycle_sigma_meters "
            "must be positive";
   }
   return "";

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/config/options.h"
 
 #include "cartographer_sdf/config/option_binding.h"
+#include "cartographer_sdf/config/option_keys.h"
 
 namespace cartographer_sdf {
 namespace {

@@ -8,28 +8,19 @@
 #define CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
 
 namespace cartographer_sdf {
 
 struct Options {
+  LoopClosingOptions loop_closing;
   ReportOptions report;
 };
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ReportOptions& options) {
-  visit("map_picture_pixels", options.map_picture_pixels);
-  visit("closure_picture_pixels", options.closure_picture_pixels);
-  visit("max_closure_pictures", options.max_closure_pictures);
-}
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, Options& options) {
-  visit("report", options.report);
-}
 
 // Of what concerns several stages; each stage's own options are validated by
 // themselves.

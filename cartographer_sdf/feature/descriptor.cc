@@ -131,24 +131,24 @@ Eigen::VectorXf Describe(const DescriptorOptions& options, const Window& window,
 
 std::string Validate(const DescriptorOptions& options) {
   if (!(options.radius_meters > 0. && options.radius_meters <= 10.)) {
-    return "descriptor.radius_meters must lie between 0 and 10";
+    return "radius_meters must lie between 0 and 10";
   }
   if (options.num_bins < 2 || options.num_bins > 360) {
-    return "descriptor.num_bins must lie between 2 and 360";
+    return "num_bins must lie between 2 and 360";
   }
   if (options.num_orientation_bins < 4 || options.num_orientation_bins > 3600) {
-    return "descriptor.num_orientation_bins must lie between 4 and 3600";
+    return "num_orientation_bins must lie between 4 and 3600";
   }
   if (!(options.distance_weight >= 0. && options.distance_weight <= 1e3)) {
-    return "descriptor.distance_weight must lie between 0 and 1000";
+    return "distance_weight must lie between 0 and 1000";
   }
   if (!(options.gaussian_sigma_ratio > 0. &&
         options.gaussian_sigma_ratio <= 100.)) {
-    return "descriptor.gaussian_sigma_ratio must lie between 0 and 100";
+    return "gaussian_sigma_ratio must lie between 0 and 100";
   }
   if (!(options.secondary_orientation_ratio > 0. &&
         options.secondary_orientation_ratio <= 1.)) {
-    return "descriptor.secondary_orientation_ratio must lie between 0 and 1";
+    return "secondary_orientation_ratio must lie between 0 and 1";
   }
   return "";
 }

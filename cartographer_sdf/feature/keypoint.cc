@@ -155,18 +155,18 @@ double PeakOffset(const double before, const double at, const double after) {
 std::string Validate(const KeypointOptions& options) {
   if (!(options.smoothing_sigma_cells > 0. &&
         options.smoothing_sigma_cells <= 50.)) {
-    return "keypoint.smoothing_sigma_cells must lie between 0 and 50";
+    return "smoothing_sigma_cells must lie between 0 and 50";
   }
   if (!(options.detection_threshold > 0.)) {
-    return "keypoint.detection_threshold must be positive";
+    return "detection_threshold must be positive";
   }
   if (options.non_maximum_suppression_cells < 1 ||
       options.non_maximum_suppression_cells > 100) {
-    return "keypoint.non_maximum_suppression_cells must lie between 1 and 100";
+    return "non_maximum_suppression_cells must lie between 1 and 100";
   }
   if (!(options.unobserved_border_cells >= 0. &&
         options.unobserved_border_cells <= 100.)) {
-    return "keypoint.unobserved_border_cells must lie between 0 and 100";
+    return "unobserved_border_cells must lie between 0 and 100";
   }
   return "";
 }

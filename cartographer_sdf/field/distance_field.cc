@@ -13,10 +13,10 @@ namespace cartographer_sdf {
 std::string Validate(const FieldOptions& options) {
   if (!(options.occupied_probability > 0. &&
         options.occupied_probability < 1.)) {
-    return "field.occupied_probability must lie between 0 and 1";
+    return "occupied_probability must lie between 0 and 1";
   }
   if (!(options.padding_meters >= 0. && options.padding_meters <= 10.)) {
-    return "field.padding_meters must lie between 0 and 10";
+    return "padding_meters must lie between 0 and 10";
   }
   return "";
 }

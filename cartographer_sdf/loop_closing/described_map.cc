@@ -17,9 +17,13 @@ constexpr size_t kBatchSize = 16;
 
 class BatchDescriber {
  public:
-  BatchDescriber(const PlaceOptions& options, const Executor& executor,
+  BatchDescriber(const PlaceOptions& place_options,
+                 const MatchOptions& match_options, const Executor& executor,
                  std::map<SubmapId, Place>* const places)
-      : options_(options), executor_(executor), places_(places) {}
+      : place_options_(place_options),
+        match_options_(match_options),
+        executor_(executor),
+        places_(places) {}
 
   void Add(const SubmapId& id, const OccupancyGrid& grid) {
     batch_.emplace_back(id, grid);
@@ -29,7 +33,11 @@ class BatchDescriber {
   void Flush() {
     std::vector<std::optional<Place>> described(batch_.size());
     executor_(batch_.size(), [&](const size_t k) {
-      described[k] = DescribePlace(options_, batch_[k].first, batch_[k].second);
+      described[k] =
+          DescribePlace(place_options_, batch_[k].first, batch_[k].second);
+      if (described[k] && match_options_.method == Method::kSdf) {
+        FindSelfSimilarities(match_options_, &*described[k]);
+      }
     });
     for (std::optional<Place>& place : described) {
       if (place) places_->emplace(place->id, *std::move(place));
@@ -38,7 +46,8 @@ class BatchDescriber {
   }
 
  private:
-  const PlaceOptions& options_;
+  const PlaceOptions& place_options_;
+  const MatchOptions& match_options_;
   const Executor& executor_;
   std::map<SubmapId, Place>* const places_;
   std::vector<std::pair<SubmapId, OccupancyGrid>> batch_;
@@ -69,12 +78,13 @@ std::vector<Match> MatchPairs(const MatchOptions& options,
 
 }  // namespace
 
-absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& options,
+absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
+                                         const MatchOptions& match_options,
                                          const std::string& path,
                                          const Executor& executor,
                                          const ProgressCallback& on_progress) {
   DescribedMap map;
-  BatchDescriber describer(options, executor, &map.places);
+  BatchDescriber describer(place_options, match_options, executor, &map.places);
   absl::StatusOr<MapState> state = ReadMap(
       path,
       [&describer](const SubmapId& id, const SubmapSummary&,

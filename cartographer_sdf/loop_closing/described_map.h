@@ -33,8 +33,9 @@ struct DescribedMap {
 
 // Fails as ReadMap does. Holds a few grids at a time.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMap(
-    const PlaceOptions& options, const std::string& path,
-    const Executor& executor, const ProgressCallback& on_progress = {});
+    const PlaceOptions& place_options, const MatchOptions& match_options,
+    const std::string& path, const Executor& executor,
+    const ProgressCallback& on_progress = {});
 
 // Every unordered pair of one map, the lower id as the reference. Submaps of
 // one trajectory whose indices differ by less than `min_index_gap` are left

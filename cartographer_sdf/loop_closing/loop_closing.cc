@@ -181,6 +181,11 @@ void OptimizeAndWithdraw(const LoopClosingOptions& options,
           result->pose_graph.constraints.end(), outcome.constraints.begin(),
           outcome.constraints.end());
     }
+    // Nothing new: the map stays as it is, to the last bit.
+    if (result->pose_graph.constraints.size() ==
+        result->state.pose_graph.constraints.size()) {
+      return;
+    }
     result->optimizations.push_back(Optimize(
         result->optimization, frozen_trajectories, &result->pose_graph));
     if (on_progress) {
@@ -279,8 +284,9 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   LoopClosingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
 
-  absl::StatusOr<DescribedMap> map = DescribeMap(
-      options.place, path, executor, clock.Begin("read and describe"));
+  absl::StatusOr<DescribedMap> map =
+      DescribeMap(options.place, options.match, path, executor,
+                  clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   result.state = std::move(map->state);
   result.num_places = map->places.size();

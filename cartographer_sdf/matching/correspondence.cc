@@ -57,13 +57,13 @@ bool IsAmbiguous(const CorrespondenceOptions& options,
 
 std::string Validate(const CorrespondenceOptions& options) {
   if (options.num_neighbours < 1 || options.num_neighbours > 100) {
-    return "correspondence.num_neighbours must lie between 1 and 100";
+    return "num_neighbours must lie between 1 and 100";
   }
   if (!(options.max_ratio > 0. && options.max_ratio <= 1.)) {
-    return "correspondence.max_ratio must lie between 0 and 1";
+    return "max_ratio must lie between 0 and 1";
   }
   if (!(options.max_clearance_difference_meters > 0.)) {
-    return "correspondence.max_clearance_difference_meters must be positive";
+    return "max_clearance_difference_meters must be positive";
   }
   return "";
 }

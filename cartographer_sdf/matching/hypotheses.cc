@@ -183,21 +183,21 @@ std::vector<Cluster> ClusterVotes(std::vector<Vote> votes) {
 std::string Validate(const HypothesisOptions& options) {
   if (options.max_num_hypotheses < 1 || options.max_num_correspondences < 2 ||
       options.max_num_correspondences > 10000) {
-    return "hypotheses.max_num_hypotheses must be positive and "
-           "hypotheses.max_num_correspondences lie between 2 and 10000";
+    return "max_num_hypotheses must be positive and "
+           "max_num_correspondences lie between 2 and 10000";
   }
   if (!(options.max_length_difference_meters > 0. &&
         options.max_orientation_difference > 0. &&
         options.max_orientation_difference < M_PI)) {
-    return "hypotheses.max_length_difference_meters must be positive and "
-           "hypotheses.max_orientation_difference lie between 0 and pi";
+    return "max_length_difference_meters must be positive and "
+           "max_orientation_difference lie between 0 and pi";
   }
   if (!(options.min_baseline_meters > 0. &&
         options.cluster_distance_meters >= 0.01 &&
         options.cluster_rotation >= 1e-4)) {
-    return "hypotheses.min_baseline_meters must be positive, "
-           "hypotheses.cluster_distance_meters at least 0.01 and "
-           "hypotheses.cluster_rotation at least 0.0001";
+    return "min_baseline_meters must be positive, "
+           "cluster_distance_meters at least 0.01 and "
+           "cluster_rotation at least 0.0001";
   }
   return "";
 }

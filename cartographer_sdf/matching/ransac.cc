@@ -141,13 +141,13 @@ Rigid2 LeastSquares(const FeatureSet& reference, const FeatureSet& query,
 std::string Validate(const RansacOptions& options) {
   if (options.max_num_iterations < 1 ||
       options.max_num_iterations > 100000000) {
-    return "ransac.max_num_iterations must lie between 1 and 1e8";
+    return "max_num_iterations must lie between 1 and 1e8";
   }
   if (!(options.inlier_distance_meters > 0.)) {
-    return "ransac.inlier_distance_meters must be positive";
+    return "inlier_distance_meters must be positive";
   }
   if (!(options.min_baseline_meters > 0.)) {
-    return "ransac.min_baseline_meters must be positive";
+    return "min_baseline_meters must be positive";
   }
   return "";
 }

@@ -74,6 +74,17 @@ std::optional<Match> MatchAsPaper(
   return match;
 }
 
+std::vector<Rigid2> ProposePoses(
+    const HypothesisOptions& options, const Place& reference,
+    const Place& query, const std::vector<Correspondence>& correspondences) {
+  std::vector<Rigid2> poses;
+  for (const Hypothesis& hypothesis : ProposeHypotheses(
+           options, reference.features, query.features, correspondences)) {
+    poses.push_back(hypothesis.T_reference_query);
+  }
+  return poses;
+}
+
 ClosureEvidence MakeEvidence(const Agreement& agreement,
                              const int num_inliers) {
   const DirectedAgreement& a = agreement.query_in_reference;
@@ -101,10 +112,10 @@ std::string Validate(const MatchOptions& options) {
     if (!error.empty()) return error;
   }
   if (!(options.inlier_distance_meters > 0.)) {
-    return "match.inlier_distance_meters must be positive";
+    return "inlier_distance_meters must be positive";
   }
   if (options.min_num_inliers < 2) {
-    return "match.min_num_inliers must be at least 2";
+    return "min_num_inliers must be at least 2";
   }
   return "";
 }
@@ -121,6 +132,15 @@ MatchOptions PaperMatchOptions() {
   return options;
 }
 
+void FindSelfSimilarities(const MatchOptions& options, Place* const place) {
+  CHECK_EQ(Validate(options), "");
+  place->surface.self_similar_poses = FindSelfSimilarPoses(
+      options.verification, place->surface,
+      ProposePoses(options.hypotheses, *place, *place,
+                   FindCorrespondences(options.correspondence, place->features,
+                                       place->features)));
+}
+
 std::optional<Match> MatchPlaces(const MatchOptions& options,
                                  const Place& reference, const Place& query) {
   CHECK_EQ(Validate(options), "");
@@ -129,14 +149,9 @@ std::optional<Match> MatchPlaces(const MatchOptions& options,
   if (options.method == Method::kPaper) {
     return MatchAsPaper(options, reference, query, correspondences);
   }
-  std::vector<Rigid2> poses;
-  for (const Hypothesis& hypothesis :
-       ProposeHypotheses(options.hypotheses, reference.features, query.features,
-                         correspondences)) {
-    poses.push_back(hypothesis.T_reference_query);
-  }
   std::optional<Verification> verification = VerifyHypotheses(
-      options.verification, reference.surface, query.surface, poses);
+      options.verification, reference.surface, query.surface,
+      ProposePoses(options.hypotheses, reference, query, correspondences));
   if (!verification) return std::nullopt;
   Match match;
   match.verdict = verification->verdict;

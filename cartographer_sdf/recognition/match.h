@@ -55,6 +55,10 @@ struct Match {
   std::optional<Verification> verification;
 };
 
+// Finds the poses in which a place resembles itself, by matching it with
+// itself, so that look-alikes are noticed when it is matched with others.
+void FindSelfSimilarities(const MatchOptions& options, Place* place);
+
 // None where there is no pose worth reporting.
 [[nodiscard]] std::optional<Match> MatchPlaces(const MatchOptions& options,
                                                const Place& reference,

@@ -40,19 +40,25 @@ class RangeFinder {
     begin_ = std::min(begin_, value);
     end_ = std::max(end_, value);
   }
-  // Never empty.
+  // The range of the axis or else of what was added; never empty.
   [[nodiscard]] Range Get(const PlotAxis& axis) const {
-    Range range{begin_, end_};
-    if (axis.range.has_value()) range = {axis.range->first, axis.range->second};
+    return axis.range.has_value()
+               ? NotEmpty({axis.range->first, axis.range->second})
+               : Get();
+  }
+  [[nodiscard]] Range Get() const { return NotEmpty({begin_, end_}); }
+
+ private:
+  static Range NotEmpty(Range range) {
     if (!(range.begin <= range.end)) range = {0., 1.};
-    const double size = range.end - range.begin;
     const double least =
         1e-9 * std::max({1., std::abs(range.begin), std::abs(range.end)});
-    if (size < least) range.end = range.begin + std::max(1., least);
+    if (range.end - range.begin < least) {
+      range.end = range.begin + std::max(1., least);
+    }
     return range;
   }
 
- private:
   double begin_ = std::numeric_limits<double>::infinity();
   double end_ = -std::numeric_limits<double>::infinity();
 };
@@ -226,7 +232,7 @@ std::string RenderHistogram(const HistogramPlot& plot) {
     counts.push_back(CountInBins(series.values, x.begin, x.end, plot.num_bins));
     for (const int count : counts.back()) y_range.Add(count);
   }
-  const Axes axes(x, y_range.Get(PlotAxis()));
+  const Axes axes(x, y_range.Get());
   std::string content;
   std::vector<std::string> names;
   for (size_t i = 0; i < counts.size(); ++i) {

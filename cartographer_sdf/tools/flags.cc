@@ -12,6 +12,9 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
+DEFINE_string(query, "",
+              "Another map, whose submaps are searched in those of --input. "
+              "None if empty: the submaps of --input in each other.");
 DEFINE_string(output, "", "The file to write.");
 DEFINE_string(report, "",
               "Directory for a report as an HTML page (index.html); made where "

@@ -14,6 +14,7 @@
 #include "gflags/gflags.h"
 
 DECLARE_string(input);
+DECLARE_string(query);
 DECLARE_string(output);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);

@@ -12,9 +12,14 @@ constexpr char kUsagePayload[] = "cartographer_sdf/usage";
 
 }  // namespace
 
+Subcommand CloseLoopsSubcommand();
+Subcommand Evaluate();
 Subcommand Info();
+Subcommand MatchSubcommand();
 
-std::vector<Subcommand> AllSubcommands() { return {Info()}; }
+std::vector<Subcommand> AllSubcommands() {
+  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(), Info()};
+}
 
 absl::Status UsageError(const std::string& message) {
   absl::Status status = absl::InvalidArgumentError(message);

@@ -8,6 +8,15 @@
 
 namespace cartographer_sdf {
 
+std::string Validate(const AgreementOptions& options) {
+  if (!(options.hit_distance_meters > 0. &&
+        options.contradiction_distance_meters >= options.hit_distance_meters)) {
+    return "hit_distance_meters must be positive and not above "
+           "contradiction_distance_meters";
+  }
+  return "";
+}
+
 DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const SurfaceModel& model,
                                    const std::vector<SurfacePoint>& points,

@@ -7,6 +7,9 @@
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_AGREEMENT_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_AGREEMENT_H_
 
+#include <string>
+#include <vector>
+
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/verification/surface_model.h"
 
@@ -19,6 +22,7 @@ struct AgreementOptions {
   // is a contradiction [m]. Between the two it is neither.
   double contradiction_distance_meters = 0.25;
 };
+[[nodiscard]] std::string Validate(const AgreementOptions& options);
 
 // Sums over the wall points of one submap, weighted by how surely they are
 // occupied.

@@ -139,16 +139,16 @@ size_t Count(const RegistrationOptions& options,
 
 std::string Validate(const RegistrationOptions& options) {
   if (options.num_iterations < 1 || options.num_iterations > 1000) {
-    return "registration.num_iterations must lie between 1 and 1000";
+    return "num_iterations must lie between 1 and 1000";
   }
   if (!(options.final_kernel_scale_meters > 0. &&
         options.initial_kernel_scale_meters >=
             options.final_kernel_scale_meters)) {
-    return "registration.final_kernel_scale_meters must be positive and not "
+    return "final_kernel_scale_meters must be positive and not "
            "above initial_kernel_scale_meters";
   }
   if (options.max_num_points < 10) {
-    return "registration.max_num_points must be at least 10";
+    return "max_num_points must be at least 10";
   }
   return "";
 }

@@ -32,6 +32,10 @@ struct SurfaceModel {
   // area that each stands for [m^2].
   std::vector<Eigen::Vector2d> observed_points;
   double area_per_observed_point = 0.;
+  // Poses other than the identity in which the submap resembles itself: the
+  // half turn of a symmetric room, shifts along a row of equal doors. Empty
+  // unless FindSelfSimilarPoses was asked.
+  std::vector<Rigid2> self_similar_poses;
 };
 
 // None where the field has none (see MakeDistanceField) or nothing is observed.

@@ -20,6 +20,9 @@ constexpr double kSameRotation = 0.1;
 constexpr double kDistinctDistance = 1.;
 constexpr double kDistinctRotation = 0.35;
 
+// More would only cost time: the best ones make the closest rivals.
+constexpr size_t kMaxNumSelfSimilarPoses = 3;
+
 // Standard deviation of a wall point's distance, by the grid and by local SLAM
 // [m].
 constexpr double kResidualSigma = 0.05;
@@ -185,17 +188,62 @@ std::optional<Candidate> Refine(const VerificationOptions& options,
   return Candidate{*std::move(registration), agreement};
 }
 
+bool IsDistinct(const Rigid2& a, const Rigid2& b,
+                const Eigen::Vector2d& middle) {
+  return !IsNear(a, b, middle, kDistinctDistance, kDistinctRotation);
+}
+
+std::vector<Candidate> RefineBest(const VerificationOptions& options,
+                                  const SurfaceModel& reference,
+                                  const SurfaceModel& query,
+                                  const std::vector<Rigid2>& hypotheses,
+                                  const Eigen::Vector2d& middle) {
+  std::vector<Candidate> candidates;
+  for (const Ranked& ranked :
+       RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
+    std::optional<Candidate> candidate =
+        Refine(options, reference, query, ranked.T_reference_query);
+    if (candidate) candidates.push_back(*std::move(candidate));
+  }
+  // Stable: of equal ones the first.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) {
+                     return a.agreement.Quality() > b.agreement.Quality();
+                   });
+  return candidates;
+}
+
+// Where else the query may lie, if one of the submaps resembles itself.
+std::vector<Candidate> SelfSimilarRivals(const VerificationOptions& options,
+                                         const SurfaceModel& reference,
+                                         const SurfaceModel& query,
+                                         const Rigid2& T_reference_query) {
+  std::vector<Rigid2> guesses;
+  for (const Rigid2& similar : reference.self_similar_poses) {
+    guesses.push_back(similar * T_reference_query);
+    guesses.push_back(similar.Inverse() * T_reference_query);
+  }
+  for (const Rigid2& similar : query.self_similar_poses) {
+    guesses.push_back(T_reference_query * similar);
+    guesses.push_back(T_reference_query * similar.Inverse());
+  }
+  std::vector<Candidate> rivals;
+  for (const Rigid2& guess : guesses) {
+    std::optional<Candidate> rival = Refine(options, reference, query, guess);
+    if (rival) rivals.push_back(*std::move(rival));
+  }
+  return rivals;
+}
+
 double MarginOf(const std::vector<Candidate>& candidates, const Candidate& best,
                 const Eigen::Vector2d& middle) {
   double margin = kMaxMargin;
   for (const Candidate& rival : candidates) {
-    if (IsNear(rival.registration.T_reference_query,
-               best.registration.T_reference_query, middle, kDistinctDistance,
-               kDistinctRotation)) {
-      continue;
+    if (IsDistinct(rival.registration.T_reference_query,
+                   best.registration.T_reference_query, middle)) {
+      margin = std::min(margin,
+                        best.agreement.Quality() - rival.agreement.Quality());
     }
-    margin =
-        std::min(margin, best.agreement.Quality() - rival.agreement.Quality());
   }
   return std::max(margin, 0.);
 }
@@ -220,31 +268,51 @@ const char* VerdictName(const Verdict verdict) {
   LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
 }
 
+std::string Validate(const RankingOptions& options) {
+  if (options.num_coarse_points < 1 || options.num_fine_points < 1 ||
+      options.num_coarse_survivors < 1 || options.num_refined < 1) {
+    return "num_coarse_points, num_fine_points, num_coarse_survivors and "
+           "num_refined must be positive";
+  }
+  if (!(options.hit_distance_meters > 0. &&
+        options.contradiction_distance_meters >= options.hit_distance_meters)) {
+    return "hit_distance_meters must be positive and not above "
+           "contradiction_distance_meters";
+  }
+  if (!(options.contradiction_weight >= 0.)) {
+    return "contradiction_weight must not be negative";
+  }
+  return "";
+}
+
+std::string Validate(const ScoreWeights& weights) {
+  for (const double weight :
+       {weights.mean_hit_ratio, weights.mean_contradiction_ratio,
+        weights.max_contradiction_ratio, weights.log_overlap_area,
+        weights.log_overlap, weights.sqrt_scatter_eigenvalue, weights.margin,
+        weights.bias}) {
+    if (!std::isfinite(weight))
+      return "mean_hit_ratio and others must be finite";
+  }
+  return "";
+}
+
 std::string Validate(const VerificationOptions& options) {
-  const RankingOptions& ranking = options.ranking;
-  if (options.num_agreement_points < 1 || ranking.num_coarse_points < 1 ||
-      ranking.num_fine_points < 1 || ranking.num_coarse_survivors < 1 ||
-      ranking.num_refined < 1) {
-    return "verification: numbers must be positive";
+  for (const std::string& error :
+       {Validate(options.ranking), Validate(options.registration),
+        Validate(options.agreement), Validate(options.score_weights)}) {
+    if (!error.empty()) return error;
   }
-  if (!(ranking.hit_distance_meters > 0. &&
-        ranking.contradiction_distance_meters >= ranking.hit_distance_meters &&
-        ranking.contradiction_weight >= 0.)) {
-    return "verification.ranking: distances must be positive, that of a "
-           "contradiction not below that of a hit, and its weight not negative";
-  }
-  if (!(options.agreement.hit_distance_meters > 0. &&
-        options.agreement.contradiction_distance_meters >=
-            options.agreement.hit_distance_meters)) {
-    return "verification.agreement: distances must be positive, and that of a "
-           "contradiction not below that of a hit";
+  if (options.num_agreement_points < 1) {
+    return "num_agreement_points must be positive";
   }
   if (!(options.min_overlap_area >= 0. &&
         options.max_contradiction_ratio >= 0. &&
         options.min_scatter_eigenvalue >= 0. && options.min_margin >= 0.)) {
-    return "verification: thresholds must not be negative";
+    return "min_overlap_area, max_contradiction_ratio, min_scatter_eigenvalue "
+           "and min_margin must not be negative";
   }
-  return Validate(options.registration);
+  return "";
 }
 
 double Agreement::Quality() const {
@@ -290,20 +358,10 @@ std::optional<Verification> VerifyHypotheses(
     const SurfaceModel& query, const std::vector<Rigid2>& hypotheses) {
   CHECK_EQ(Validate(options), "");
   const Eigen::Vector2d middle = Middle(query);
-  std::vector<Candidate> candidates;
-  for (const Ranked& ranked :
-       RankHypotheses(options.ranking, reference, query, hypotheses, middle)) {
-    std::optional<Candidate> candidate =
-        Refine(options, reference, query, ranked.T_reference_query);
-    if (candidate) candidates.push_back(*std::move(candidate));
-  }
+  const std::vector<Candidate> candidates =
+      RefineBest(options, reference, query, hypotheses, middle);
   if (candidates.empty()) return std::nullopt;
-  // The first of equal ones.
-  const Candidate& best =
-      *std::max_element(candidates.begin(), candidates.end(),
-                        [](const Candidate& a, const Candidate& b) {
-                          return a.agreement.Quality() < b.agreement.Quality();
-                        });
+  const Candidate& best = candidates.front();
   Verification verification;
   verification.T_reference_query = best.registration.T_reference_query;
   verification.information =
@@ -313,7 +371,39 @@ std::optional<Verification> VerifyHypotheses(
   verification.score =
       Score(options.score_weights, best.agreement, verification.margin);
   verification.verdict = Judge(options, verification);
+  if (verification.verdict == Verdict::kAccepted) {
+    // Only now, as few pairs get here.
+    verification.margin =
+        std::min(verification.margin,
+                 MarginOf(SelfSimilarRivals(options, reference, query,
+                                            verification.T_reference_query),
+                          best, middle));
+    verification.score =
+        Score(options.score_weights, best.agreement, verification.margin);
+    verification.verdict = Judge(options, verification);
+  }
   return verification;
+}
+
+std::vector<Rigid2> FindSelfSimilarPoses(
+    const VerificationOptions& options, const SurfaceModel& model,
+    const std::vector<Rigid2>& hypotheses) {
+  CHECK_EQ(Validate(options), "");
+  const Eigen::Vector2d middle = Middle(model);
+  std::vector<Rigid2> distinct, poses;
+  for (const Rigid2& hypothesis : hypotheses) {
+    if (IsDistinct(hypothesis, Rigid2(), middle))
+      distinct.push_back(hypothesis);
+  }
+  for (const Candidate& candidate :
+       RefineBest(options, model, model, distinct, middle)) {
+    const Rigid2& pose = candidate.registration.T_reference_query;
+    if (poses.size() < kMaxNumSelfSimilarPoses &&
+        IsDistinct(pose, Rigid2(), middle)) {
+      poses.push_back(pose);
+    }
+  }
+  return poses;
 }
 
 }  // namespace cartographer_sdf

@@ -49,6 +49,7 @@ struct RankingOptions {
   double min_coarse_score = 0.3;
   double min_fine_score = 0.45;
 };
+[[nodiscard]] std::string Validate(const RankingOptions& options);
 
 // The score, log-odds of being right, is linear in these terms. The weights are
 // learned by logistic regression (scripts/learn_score.py) on pairs of submaps
@@ -63,6 +64,7 @@ struct ScoreWeights {
   double margin = 18.;  // of quality to the best distinct pose, capped
   double bias = -18.5;
 };
+[[nodiscard]] std::string Validate(const ScoreWeights& weights);
 
 struct VerificationOptions {
   RankingOptions ranking;
@@ -119,11 +121,18 @@ struct Verification {
 };
 
 // None where no hypothesis is worth refining. Independent of the order of the
-// hypotheses.
+// hypotheses. Rivals of the best pose are the other hypotheses and what it
+// becomes by self-similar poses of either submap.
 [[nodiscard]] std::optional<Verification> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query);
+
+// The poses among the hypotheses, refined, in which the submap resembles itself
+// and which are distinct from the identity; best first.
+[[nodiscard]] std::vector<Rigid2> FindSelfSimilarPoses(
+    const VerificationOptions& options, const SurfaceModel& model,
+    const std::vector<Rigid2>& hypotheses);
 
 }  // namespace cartographer_sdf
 

@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The Lua keys of every option struct; see option_binding.h. The Lua files say
+// what each does.
+
+#ifndef CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_
+#define CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cartographer_sdf/config/options.h"
+
+namespace cartographer_sdf {
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, FieldOptions& options) {
+  visit("occupied_probability", options.occupied_probability);
+  visit("padding_meters", options.padding_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, KeypointOptions& options) {
+  visit("smoothing_sigma_cells", options.smoothing_sigma_cells);
+  visit("detection_threshold", options.detection_threshold);
+  visit("non_maximum_suppression_cells", options.non_maximum_suppression_cells);
+  visit("unobserved_border_cells", options.unobserved_border_cells);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, DescriptorOptions& options) {
+  visit("radius_meters", options.radius_meters);
+  visit("num_bins", options.num_bins);
+  visit("num_orientation_bins", options.num_orientation_bins);
+  visit("distance_weight", options.distance_weight);
+  visit("gaussian_sigma_ratio", options.gaussian_sigma_ratio);
+  visit("secondary_orientation_ratio", options.secondary_orientation_ratio);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, PlaceOptions& options) {
+  visit("field", options.field);
+  visit("keypoint", options.keypoint);
+  visit("descriptor", options.descriptor);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CorrespondenceOptions& options) {
+  visit("num_neighbours", options.num_neighbours);
+  visit("use_ratio_test", options.use_ratio_test);
+  visit("max_ratio", options.max_ratio);
+  visit("max_clearance_difference_meters",
+        options.max_clearance_difference_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, HypothesisOptions& options) {
+  visit("max_num_hypotheses", options.max_num_hypotheses);
+  visit("max_num_correspondences", options.max_num_correspondences);
+  visit("max_length_difference_meters", options.max_length_difference_meters);
+  visit("max_orientation_difference", options.max_orientation_difference);
+  visit("min_baseline_meters", options.min_baseline_meters);
+  visit("cluster_distance_meters", options.cluster_distance_meters);
+  visit("cluster_rotation", options.cluster_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RansacOptions& options) {
+  visit("max_num_iterations", options.max_num_iterations);
+  visit("inlier_distance_meters", options.inlier_distance_meters);
+  visit("min_baseline_meters", options.min_baseline_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RankingOptions& options) {
+  visit("num_coarse_points", options.num_coarse_points);
+  visit("num_fine_points", options.num_fine_points);
+  visit("num_coarse_survivors", options.num_coarse_survivors);
+  visit("num_refined", options.num_refined);
+  visit("hit_distance_meters", options.hit_distance_meters);
+  visit("contradiction_distance_meters", options.contradiction_distance_meters);
+  visit("contradiction_weight", options.contradiction_weight);
+  visit("min_coarse_score", options.min_coarse_score);
+  visit("min_fine_score", options.min_fine_score);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RegistrationOptions& options) {
+  visit("num_iterations", options.num_iterations);
+  visit("initial_kernel_scale_meters", options.initial_kernel_scale_meters);
+  visit("final_kernel_scale_meters", options.final_kernel_scale_meters);
+  visit("max_num_points", options.max_num_points);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, AgreementOptions& options) {
+  visit("hit_distance_meters", options.hit_distance_meters);
+  visit("contradiction_distance_meters", options.contradiction_distance_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ScoreWeights& options) {
+  visit("mean_hit_ratio", options.mean_hit_ratio);
+  visit("mean_contradiction_ratio", options.mean_contradiction_ratio);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
+  visit("log_overlap_area", options.log_overlap_area);
+  visit("log_overlap", options.log_overlap);
+  visit("sqrt_scatter_eigenvalue", options.sqrt_scatter_eigenvalue);
+  visit("margin", options.margin);
+  visit("bias", options.bias);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, VerificationOptions& options) {
+  visit("ranking", options.ranking);
+  visit("registration", options.registration);
+  visit("agreement", options.agreement);
+  visit("num_agreement_points", options.num_agreement_points);
+  visit("score_weights", options.score_weights);
+  visit("min_overlap_area", options.min_overlap_area);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
+  visit("min_scatter_eigenvalue", options.min_scatter_eigenvalue);
+  visit("min_score", options.min_score);
+  visit("min_margin", options.min_margin);
+}
+
+[[nodiscard]] inline std::vector<std::pair<std::string, Method>> OptionNames(
+    Method) {
+  return {{"sdf", Method::kSdf}, {"paper", Method::kPaper}};
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, MatchOptions& options) {
+  visit("method", options.method);
+  visit("correspondence", options.correspondence);
+  visit("hypotheses", options.hypotheses);
+  visit("verification", options.verification);
+  visit("inlier_distance_meters", options.inlier_distance_meters);
+  visit("ransac", options.ransac);
+  visit("min_num_inliers", options.min_num_inliers);
+  visit("seed", options.seed);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
+  visit("rotation_sigma_per_sqrt_meter", options.rotation_sigma_per_sqrt_meter);
+  visit("translation_sigma_per_meter", options.translation_sigma_per_meter);
+  visit("closure_translation_sigma_meters",
+        options.closure_translation_sigma_meters);
+  visit("closure_rotation_sigma", options.closure_rotation_sigma);
+  visit("max_mahalanobis_distance", options.max_mahalanobis_distance);
+  visit("max_cycle_sigma_meters", options.max_cycle_sigma_meters);
+  visit("min_unsupported_score", options.min_unsupported_score);
+  visit("min_support", options.min_support);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, LiftingOptions& options) {
+  visit("num_nodes_per_submap", options.num_nodes_per_submap);
+  visit("translation_weight", options.translation_weight);
+  visit("rotation_weight", options.rotation_weight);
+  visit("translation_sigma_meters", options.translation_sigma_meters);
+  visit("rotation_sigma", options.rotation_sigma);
+  visit("max_num_sigmas", options.max_num_sigmas);
+  visit("min_hit_ratio", options.min_hit_ratio);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, OptimizationOptions& options) {
+  visit("huber_scale", options.huber_scale);
+  visit("local_slam_pose_translation_weight",
+        options.local_slam_pose_translation_weight);
+  visit("local_slam_pose_rotation_weight",
+        options.local_slam_pose_rotation_weight);
+  visit("odometry_translation_weight", options.odometry_translation_weight);
+  visit("odometry_rotation_weight", options.odometry_rotation_weight);
+  visit("max_num_iterations", options.max_num_iterations);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, WithdrawalOptions& options) {
+  visit("max_translation_error_meters", options.max_translation_error_meters);
+  visit("max_rotation_error", options.max_rotation_error);
+  visit("max_num_rounds", options.max_num_rounds);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
+  visit("place", options.place);
+  visit("match", options.match);
+  visit("min_index_gap", options.min_index_gap);
+  visit("consistency", options.consistency);
+  visit("lifting", options.lifting);
+  visit("optimization", options.optimization);
+  visit("infer_odometry_weights", options.infer_odometry_weights);
+  visit("withdrawal", options.withdrawal);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ReportOptions& options) {
+  visit("map_picture_pixels", options.map_picture_pixels);
+  visit("closure_picture_pixels", options.closure_picture_pixels);
+  visit("max_closure_pictures", options.max_closure_pictures);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, Options& options) {
+  visit("loop_closing", options.loop_closing);
+  visit("report", options.report);
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_

@@ -1,0 +1,249 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/evaluation/match_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "cartographer_sdf/evaluation/error_statistics.h"
+
+namespace cartographer_sdf {
+namespace {
+
+constexpr double kCellSize = 0.2;  // [m]
+constexpr int kMaxIndexDifferenceOfNeighbours = 2;
+constexpr double kPositiveOverlap = 0.5;
+constexpr double kRightTranslation = 0.5;           // [m]
+constexpr double kWrongTranslation = 1.;            // [m]
+constexpr double kMaxRotation = 10. * M_PI / 180.;  // [rad]
+constexpr double kHighPrecision = 0.99;
+
+using Cell = std::pair<int64_t, int64_t>;
+using Area = std::vector<Cell>;  // sorted, each once
+
+Area ObservedArea(const Rigid2& T_world_submap, const ObservedPoints& points) {
+  Area area;
+  for (const Eigen::Vector2d& p_submap : points) {
+    const Eigen::Vector2d p_world = T_world_submap * p_submap;
+    area.emplace_back(
+        static_cast<int64_t>(std::floor(p_world.x() / kCellSize)),
+        static_cast<int64_t>(std::floor(p_world.y() / kCellSize)));
+  }
+  std::sort(area.begin(), area.end());
+  area.erase(std::unique(area.begin(), area.end()), area.end());
+  return area;
+}
+
+std::map<SubmapId, Area> ObservedAreas(
+    const std::map<SubmapId, ObservedPoints>& submaps, const Truth& truth) {
+  std::map<SubmapId, Area> areas;
+  for (const auto& [id, points] : submaps) {
+    const auto T_world_submap = truth.T_world_submap.find(id);
+    if (T_world_submap != truth.T_world_submap.end() && !points.empty()) {
+      areas[id] = ObservedArea(T_world_submap->second, points);
+    }
+  }
+  return areas;
+}
+
+Eigen::Vector2d Centre(const Area& area) {
+  int64_t sum_x = 0;
+  int64_t sum_y = 0;
+  for (const auto& [x, y] : area) {
+    sum_x += x;
+    sum_y += y;
+  }
+  const Eigen::Vector2d mean =
+      Eigen::Vector2d(static_cast<double>(sum_x), static_cast<double>(sum_y)) /
+      static_cast<double>(area.size());
+  return kCellSize * (mean + Eigen::Vector2d::Constant(0.5));
+}
+
+PairTruth MakePairTruth(const Area& reference, const Area& query) {
+  Area both;
+  std::set_intersection(reference.begin(), reference.end(), query.begin(),
+                        query.end(), std::back_inserter(both));
+  return PairTruth{
+      static_cast<double>(both.size()) /
+          static_cast<double>(std::min(reference.size(), query.size())),
+      Centre(both.empty() ? query : both)};
+}
+
+bool ShareScans(const SubmapId& a, const SubmapId& b) {
+  return a.trajectory == b.trajectory &&
+         std::abs(a.index - b.index) <= kMaxIndexDifferenceOfNeighbours;
+}
+
+struct Answer {
+  double score = 0.;
+  bool to_positive = false;
+  double translation_error = 0.;
+  double rotation_error = 0.;
+
+  bool IsRight() const {
+    return translation_error < kRightTranslation &&
+           rotation_error < kMaxRotation;
+  }
+  bool IsWrong() const {
+    return translation_error > kWrongTranslation ||
+           rotation_error > kMaxRotation;
+  }
+};
+
+Answer MakeAnswer(const PairTruth& pair, const Rigid2& T_world_reference,
+                  const Rigid2& T_world_query, const MatchRow& match) {
+  const Rigid2 T_true_found =
+      (T_world_reference.Inverse() * T_world_query).Inverse() *
+      match.T_reference_query;
+  const Eigen::Vector2d centre_query =
+      T_world_query.Inverse() * pair.centre_world;
+  return Answer{match.score, pair.overlap >= kPositiveOverlap,
+                (T_true_found * centre_query - centre_query).norm(),
+                std::abs(T_true_found.rotation())};
+}
+
+// By falling score; the first answer to each pair only.
+std::vector<Answer> JudgeAnswers(const PairTruths& pairs,
+                                 const Truth& reference_truth,
+                                 const Truth& query_truth,
+                                 const std::vector<MatchRow>& matches) {
+  std::vector<Answer> answers;
+  std::set<std::pair<SubmapId, SubmapId>> seen;
+  for (const MatchRow& match : matches) {
+    const auto pair = pairs.find({match.reference, match.query});
+    if (pair == pairs.end() || !seen.insert(pair->first).second) continue;
+    answers.push_back(MakeAnswer(
+        pair->second, reference_truth.T_world_submap.at(match.reference),
+        query_truth.T_world_submap.at(match.query), match));
+  }
+  std::stable_sort(
+      answers.begin(), answers.end(),
+      [](const Answer& a, const Answer& b) { return a.score > b.score; });
+  return answers;
+}
+
+void FollowPrecisionRecallCurve(const std::vector<Answer>& answers,
+                                MatchScore* const score) {
+  const double num_positives = std::max(1, score->num_positives);
+  int num_right = 0;
+  double sum_of_precisions = 0.;
+  for (const Answer& answer : answers) {
+    const bool is_right_positive = answer.IsRight() && answer.to_positive;
+    if (is_right_positive) {
+      ++num_right;
+    } else if (answer.IsWrong()) {
+      ++score->num_wrong;
+    } else if (!answer.IsRight()) {
+      ++score->num_near;
+    }
+    const double precision =
+        static_cast<double>(num_right) /
+        static_cast<double>(std::max(1, num_right + score->num_wrong));
+    if (score->num_wrong == 0) {
+      score->recall_at_precision_1 = num_right / num_positives;
+      score->threshold = answer.score;
+    }
+    if (precision >= kHighPrecision) {
+      score->recall_at_precision_99 = num_right / num_positives;
+    }
+    if (is_right_positive) sum_of_precisions += precision;
+  }
+  score->average_precision = sum_of_precisions / num_positives;
+}
+
+void SummarizeErrors(const std::vector<Answer>& answers,
+                     MatchScore* const score) {
+  std::vector<double> translations;
+  std::vector<double> rotations;
+  for (const Answer& answer : answers) {
+    if (!answer.IsRight()) continue;
+    translations.push_back(answer.translation_error);
+    rotations.push_back(answer.rotation_error);
+  }
+  if (translations.empty()) return;
+  score->median_translation_error = Summarize(std::move(translations))->median;
+  score->median_rotation_error = Summarize(std::move(rotations))->median;
+}
+
+}  // namespace
+
+ObservedPoints ThinnedObservedPoints(const OccupancyGrid& grid) {
+  ObservedPoints points;
+  const Eigen::Array2i& size = grid.geometry.size;
+  for (int j = (size.y() + 1) % 2; j < size.y(); j += 2) {
+    for (int i = (size.x() + 1) % 2; i < size.x(); i += 2) {
+      if (grid.known(i, j)) {
+        points.push_back(grid.geometry.CellCentre({i, j}));
+      }
+    }
+  }
+  return points;
+}
+
+PairTruths ComputePairTruths(const std::map<SubmapId, ObservedPoints>& submaps,
+                             const Truth& truth) {
+  const std::map<SubmapId, Area> areas = ObservedAreas(submaps, truth);
+  PairTruths pairs;
+  for (auto reference = areas.begin(); reference != areas.end(); ++reference) {
+    for (auto query = std::next(reference); query != areas.end(); ++query) {
+      if (ShareScans(reference->first, query->first)) continue;
+      pairs[{reference->first, query->first}] =
+          MakePairTruth(reference->second, query->second);
+    }
+  }
+  return pairs;
+}
+
+PairTruths ComputePairTruths(
+    const std::map<SubmapId, ObservedPoints>& reference_submaps,
+    const Truth& reference_truth,
+    const std::map<SubmapId, ObservedPoints>& query_submaps,
+    const Truth& query_truth) {
+  const std::map<SubmapId, Area> query_areas =
+      ObservedAreas(query_submaps, query_truth);
+  PairTruths pairs;
+  for (const auto& [reference, reference_area] :
+       ObservedAreas(reference_submaps, reference_truth)) {
+    for (const auto& [query, query_area] : query_areas) {
+      pairs[{reference, query}] = MakePairTruth(reference_area, query_area);
+    }
+  }
+  return pairs;
+}
+
+MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,
+                        const std::vector<MatchRow>& matches) {
+  std::vector<MatchRow> ordered = matches;
+  for (MatchRow& match : ordered) {
+    if (match.query < match.reference) {
+      std::swap(match.reference, match.query);
+      match.T_reference_query = match.T_reference_query.Inverse();
+    }
+  }
+  return ScoreMatches(pairs, truth, truth, ordered);
+}
+
+MatchScore ScoreMatches(const PairTruths& pairs, const Truth& reference_truth,
+                        const Truth& query_truth,
+                        const std::vector<MatchRow>& matches) {
+  MatchScore score;
+  score.num_pairs = static_cast<int>(pairs.size());
+  score.num_positives = static_cast<int>(
+      std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) {
+        return pair.second.overlap >= kPositiveOverlap;
+      }));
+  const std::vector<Answer> answers =
+      JudgeAnswers(pairs, reference_truth, query_truth, matches);
+  score.num_answers = static_cast<int>(answers.size());
+  FollowPrecisionRecallCurve(answers, &score);
+  SummarizeErrors(answers, &score);
+  return score;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// How good matches of submaps are, against the truth.
+//
+// A pair of submaps counts as positive where at least half of the smaller
+// observed area lies in the other under the true poses (on 0.2 m cells). The
+// error of an answer is that at the centre of the true overlap (of the query's
+// area where there is none): right within 0.5 m and 10 degrees; wrong, wherever
+// the pair lies, beyond 1 m or 10 degrees; near between, because maps and their
+// truth bend that much. Pairs of submaps of one trajectory that are at most two
+// apart share scans and are left out, and so are those without a truth.
+
+#ifndef CARTOGRAPHER_SDF_EVALUATION_MATCH_SCORE_H_
+#define CARTOGRAPHER_SDF_EVALUATION_MATCH_SCORE_H_
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/submap_id.h"
+
+namespace cartographer_sdf {
+
+// Centres of observed cells in the submap frame [m].
+using ObservedPoints = std::vector<Eigen::Vector2d>;
+
+// Of every second known cell along both axes, counted as the host does from the
+// last cell on: 0.1 m apart where cells have 0.05 m.
+[[nodiscard]] ObservedPoints ThinnedObservedPoints(const OccupancyGrid& grid);
+
+struct PairTruth {
+  // Common area as a fraction of the smaller one's.
+  double overlap = 0.;
+  // Centre of the common area; of the query's where there is none [m].
+  Eigen::Vector2d centre_world = Eigen::Vector2d::Zero();
+};
+using PairTruths = std::map<std::pair<SubmapId, SubmapId>, PairTruth>;
+
+// Of the submaps of one map: pairs (reference, query) with reference < query.
+[[nodiscard]] PairTruths ComputePairTruths(
+    const std::map<SubmapId, ObservedPoints>& submaps, const Truth& truth);
+// Of each submap of the reference map with each of the query map; both truths
+// are in one world frame.
+[[nodiscard]] PairTruths ComputePairTruths(
+    const std::map<SubmapId, ObservedPoints>& reference_submaps,
+    const Truth& reference_truth,
+    const std::map<SubmapId, ObservedPoints>& query_submaps,
+    const Truth& query_truth);
+
+struct MatchScore {
+  int num_pairs = 0;
+  int num_positives = 0;
+  // Distinct pairs with an answer that can be judged.
+  int num_answers = 0;
+  int num_wrong = 0;
+  int num_near = 0;
+  // Answers are taken by falling score, of equal ones in the order of the
+  // table. Right answers to positive pairs over all positive pairs: before the
+  // first wrong answer, the most at a precision of 0.99, and the area below the
+  // precision-recall curve.
+  double recall_at_precision_1 = 0.;
+  double recall_at_precision_99 = 0.;
+  double average_precision = 0.;
+  // The last score before the first wrong answer; none where the first answer
+  // is wrong.
+  std::optional<double> threshold;
+  // Of right answers; none where there are none.
+  std::optional<double> median_translation_error;  // [m]
+  std::optional<double> median_rotation_error;     // [rad]
+};
+
+// Matches of one map: an answer for (i, j) with i > j is inverted.
+[[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,
+                                      const Truth& truth,
+                                      const std::vector<MatchRow>& matches);
+[[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,
+                                      const Truth& reference_truth,
+                                      const Truth& query_truth,
+                                      const std::vector<MatchRow>& matches);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_EVALUATION_MATCH_SCORE_H_

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What the subcommands that work on maps share: threads, progress, tables.
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_STAGES_H_
+#define CARTOGRAPHER_SDF_TOOLS_STAGES_H_
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/tools/progress.h"
+
+namespace cartographer_sdf {
+
+[[nodiscard]] Executor MakeExecutor(int num_threads);
+
+// A progress line for one stage after the other.
+class StageProgress {
+ public:
+  // For LoopClosing's callbacks; not to be used after this object.
+  [[nodiscard]] StageCallback Callback();
+  [[nodiscard]] ProgressCallback Begin(const std::string& stage);
+
+ private:
+  std::unique_ptr<Progress> progress_;
+};
+
+[[nodiscard]] MatchRow ToRow(const Match& match, bool accepted,
+                             const std::string& verdict);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_STAGES_H_
