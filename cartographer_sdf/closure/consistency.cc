@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -68,6 +69,10 @@ LoopClosure Inverse(const LoopClosure& closure) {
   inverse.query = closure.reference;
   inverse.T_reference_query = closure.T_reference_query.Inverse();
   return inverse;
+}
+
+LoopClosure FromLowerToHigherId(const LoopClosure& closure) {
+  return closure.query < closure.reference ? Inverse(closure) : closure;
 }
 
 // a.reference -> a.query -> b.query -> b.reference -> a.reference.
@@ -156,13 +161,20 @@ std::string Validate(const ConsistencyOptions& options) {
 
 CycleVerdict CheckCycle(const ConsistencyOptions& options,
                         const std::map<SubmapId, OdometryPose>& odometry,
-                        const LoopClosure& a, const LoopClosure& b) {
+                        const LoopClosure& one, const LoopClosure& other) {
+  // Where a cycle begins and in which direction it runs makes a difference:
+  // covariances are those of either direction.
+  LoopClosure a = FromLowerToHigherId(one);
+  LoopClosure b = FromLowerToHigherId(other);
+  if (std::tie(b.reference, b.query) < std::tie(a.reference, a.query)) {
+    std::swap(a, b);
+  }
   std::optional<UncertainPose> cycle = Cycle(options, odometry, a, b);
-  const std::optional<UncertainPose> other =
+  const std::optional<UncertainPose> crosswise =
       Cycle(options, odometry, a, Inverse(b));
   if (!cycle ||
-      (other && TranslationSigma(*other) < TranslationSigma(*cycle))) {
-    cycle = other;
+      (crosswise && TranslationSigma(*crosswise) < TranslationSigma(*cycle))) {
+    cycle = crosswise;
   }
   if (!cycle || TranslationSigma(*cycle) > options.max_cycle_sigma_meters) {
     return CycleVerdict::kUninformative;
@@ -195,21 +207,23 @@ std::vector<SelectionResult> SelectConsistent(
     const std::vector<LoopClosure>& closures) {
   CHECK_EQ(Validate(options), "");
   const VerdictTable table(options, odometry, closures);
-  std::vector<size_t> all(closures.size());
-  for (size_t k = 0; k < all.size(); ++k) all[k] = k;
+  std::vector<size_t> by_ids(closures.size());
+  for (size_t k = 0; k < by_ids.size(); ++k) by_ids[k] = k;
+  std::sort(by_ids.begin(), by_ids.end(), [&](const size_t a, const size_t b) {
+    const LoopClosure &x = closures[a], &y = closures[b];
+    return std::tie(x.reference, x.query) < std::tie(y.reference, y.query);
+  });
   // The closures that most others back come first and set the frame in which
   // later ones are judged.
   std::vector<double> weight;
-  for (const size_t k : all) {
-    const SelectionResult heard = Hear(table, closures, all, k);
+  for (size_t k = 0; k < closures.size(); ++k) {
+    const SelectionResult heard = Hear(table, closures, by_ids, k);
     weight.push_back(closures[k].score + heard.support - heard.contradiction);
   }
-  std::vector<size_t> order = all;
-  std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
-    const LoopClosure &x = closures[a], &y = closures[b];
-    return std::tie(weight[b], x.reference, x.query) <
-           std::tie(weight[a], y.reference, y.query);
-  });
+  std::vector<size_t> order = by_ids;
+  std::stable_sort(
+      order.begin(), order.end(),
+      [&](const size_t a, const size_t b) { return weight[a] > weight[b]; });
   std::vector<size_t> chosen;
   std::vector<SelectionResult> results(closures.size());
   for (const size_t k : order) {
@@ -220,7 +234,7 @@ std::vector<SelectionResult> SelectConsistent(
       chosen.push_back(k);
     }
   }
-  for (const size_t k : all) {
+  for (size_t k = 0; k < closures.size(); ++k) {
     if (results[k].selection != Selection::kSelected) continue;
     results[k] = Hear(table, closures, chosen, k);
     if (results[k].support < options.min_support &&

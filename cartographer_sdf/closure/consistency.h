@@ -55,10 +55,11 @@ enum class CycleVerdict { kConsistent, kInconsistent, kUninformative };
 
 // The cycle of two closures: each pair of their ends is joined by odometry
 // where it shares a trajectory; of the two ways to join them, the more certain.
+// The same for either order of the two, and either direction of each.
 [[nodiscard]] CycleVerdict CheckCycle(
     const ConsistencyOptions& options,
-    const std::map<SubmapId, OdometryPose>& odometry, const LoopClosure& a,
-    const LoopClosure& b);
+    const std::map<SubmapId, OdometryPose>& odometry, const LoopClosure& one,
+    const LoopClosure& other);
 
 enum class Selection {
   kSelected,

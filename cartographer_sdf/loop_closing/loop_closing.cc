@@ -113,47 +113,6 @@ void LiftClosures(const LiftingOptions& options, const PoseGraph& pose_graph,
   });
 }
 
-ConstraintError MeanError(const PoseGraph& pose_graph,
-                          const std::vector<Constraint>& constraints) {
-  ConstraintError mean;
-  for (const Constraint& constraint : constraints) {
-    const ConstraintError error = ConstraintResidual(pose_graph, constraint);
-    mean.translation += error.translation;
-    mean.rotation += error.rotation;
-  }
-  mean.translation /= static_cast<double>(constraints.size());
-  mean.rotation /= static_cast<double>(constraints.size());
-  return mean;
-}
-
-// In units of what is allowed.
-double Excess(const WithdrawalOptions& options, const ConstraintError& error) {
-  return std::max(error.translation / options.max_translation_error_meters,
-                  error.rotation / options.max_rotation_error);
-}
-
-// Withdraws what the graph contradicts most; false where there is nothing. A
-// false closure strains true ones beside it, so that only those at least half
-// as bad as the worst go at once.
-bool Withdraw(const WithdrawalOptions& options, const PoseGraph& pose_graph,
-              std::vector<ClosureOutcome>* const outcomes) {
-  double worst = 0.;
-  for (ClosureOutcome& outcome : *outcomes) {
-    if (outcome.fate != Fate::kInGraph) continue;
-    outcome.error = MeanError(pose_graph, outcome.constraints);
-    worst = std::max(worst, Excess(options, outcome.error));
-  }
-  if (worst <= 1.) return false;
-  for (ClosureOutcome& outcome : *outcomes) {
-    if (outcome.fate == Fate::kInGraph &&
-        Excess(options, outcome.error) > std::max(1., 0.5 * worst)) {
-      outcome.fate = Fate::kWithdrawn;
-      outcome.constraints.clear();
-    }
-  }
-  return true;
-}
-
 OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
                                    const PoseGraph& pose_graph) {
   OptimizationOptions in_force = options.optimization;
@@ -167,53 +126,7 @@ OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
   return in_force;
 }
 
-void OptimizeAndWithdraw(const LoopClosingOptions& options,
-                         const std::set<int>& frozen_trajectories,
-                         const ProgressCallback& on_progress,
-                         LoopClosingResult* const result) {
-  result->optimization = OptionsInForce(options, result->state.pose_graph);
-  for (int round = 0;; ++round) {
-    // From the poses of the file each time: a withdrawn closure leaves no
-    // trace.
-    result->pose_graph = result->state.pose_graph;
-    for (const ClosureOutcome& outcome : result->closures) {
-      result->pose_graph.constraints.insert(
-          result->pose_graph.constraints.end(), outcome.constraints.begin(),
-          outcome.constraints.end());
-    }
-    // Nothing new: the map stays as it is, to the last bit.
-    if (result->pose_graph.constraints.size() ==
-        result->state.pose_graph.constraints.size()) {
-      return;
-    }
-    result->optimizations.push_back(Optimize(
-        result->optimization, frozen_trajectories, &result->pose_graph));
-    if (on_progress) {
-      on_progress(static_cast<double>(round + 1) /
-                  (options.withdrawal.max_num_rounds + 1));
-    }
-    // The last round's graph has been optimised without what was withdrawn
-    // before; nothing may be withdrawn after it.
-    if (round >= options.withdrawal.max_num_rounds ||
-        !Withdraw(options.withdrawal, result->pose_graph, &result->closures)) {
-      return;
-    }
-  }
-}
-
 }  // namespace
-
-std::string Validate(const WithdrawalOptions& options) {
-  if (!(options.max_translation_error_meters > 0. &&
-        options.max_rotation_error > 0.)) {
-    return "max_translation_error_meters and max_rotation_error must be "
-           "positive";
-  }
-  if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {
-    return "max_num_rounds must lie between 0 and 1000";
-  }
-  return "";
-}
 
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
@@ -224,22 +137,6 @@ std::string Validate(const LoopClosingOptions& options) {
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";
   return "";
-}
-
-const char* FateName(const Fate fate) {
-  switch (fate) {
-    case Fate::kInGraph:
-      return "in_graph";
-    case Fate::kContradicted:
-      return "contradicted_by_others";
-    case Fate::kUnsupported:
-      return "unsupported";
-    case Fate::kScansDisagree:
-      return "scans_disagree";
-    case Fate::kWithdrawn:
-      return "withdrawn";
-  }
-  LOG(FATAL) << "not a fate: " << static_cast<int>(fate);
 }
 
 std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
@@ -311,8 +208,12 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   LiftClosures(options.lifting, result.state.pose_graph, map->places, *scans,
                executor, &result.closures);
 
-  OptimizeAndWithdraw(options, frozen_trajectories, clock.Begin("optimise"),
-                      &result);
+  result.optimization = OptionsInForce(options, result.state.pose_graph);
+  OptimizedGraph optimized = OptimizeAndWithdraw(
+      options.withdrawal, result.optimization, frozen_trajectories,
+      result.state.pose_graph, &result.closures, clock.Begin("optimise"));
+  result.pose_graph = std::move(optimized.pose_graph);
+  result.optimizations = std::move(optimized.optimizations);
   clock.End();
   return result;
 }

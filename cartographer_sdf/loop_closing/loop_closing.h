@@ -16,22 +16,13 @@
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/closure/consistency.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/loop_closing/withdrawal.h"
 #include "cartographer_sdf/pose_graph/lifting.h"
 #include "cartographer_sdf/pose_graph/odometry_weights.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/recognition/match.h"
 
 namespace cartographer_sdf {
-
-// A closure that the optimised graph contradicts is withdrawn and the rest is
-// optimised again.
-struct WithdrawalOptions {
-  // Largest mean error of a closure's constraints [m], [rad].
-  double max_translation_error_meters = 0.5;
-  double max_rotation_error = 0.1;
-  int max_num_rounds = 10;
-};
-[[nodiscard]] std::string Validate(const WithdrawalOptions& options);
 
 struct LoopClosingOptions {
   PlaceOptions place;
@@ -48,27 +39,6 @@ struct LoopClosingOptions {
   WithdrawalOptions withdrawal;
 };
 [[nodiscard]] std::string Validate(const LoopClosingOptions& options);
-
-// What became of a match that verification accepted.
-enum class Fate {
-  kInGraph,
-  kContradicted,   // by weightier closures
-  kUnsupported,    // by no other, and not certain enough alone
-  kScansDisagree,  // the scans of its nodes do not fit
-  kWithdrawn,      // the optimised graph contradicts it
-};
-// "in_graph", ...
-[[nodiscard]] const char* FateName(Fate fate);
-
-struct ClosureOutcome {
-  Match match;
-  Fate fate;
-  // Its constraints in the final graph; empty unless kInGraph.
-  std::vector<Constraint> constraints;
-  // Mean error of its constraints in the last optimised graph that had them;
-  // zero for those that were never in one.
-  ConstraintError error;
-};
 
 struct LoopClosingResult {
   MapState state;        // as read

@@ -38,6 +38,10 @@ struct Regression {
 
 std::optional<OdometryWeights> InferOdometryWeights(
     const OptimizationOptions& options, const PoseGraph& pose_graph) {
+  if (!(options.local_slam_pose_translation_weight > 0. &&
+        options.local_slam_pose_rotation_weight > 0.)) {
+    return std::nullopt;
+  }
   Regression translation, rotation;
   int num_steps = 0;
   auto previous = pose_graph.nodes.begin();

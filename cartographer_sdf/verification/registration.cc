@@ -14,8 +14,6 @@ namespace {
 
 // Fewer wall points than this fix no pose.
 constexpr double kMinSumOfWeights = 5.;
-// Steps below this change nothing that matters [m, rad].
-constexpr double kConverged = 1e-5;
 
 struct NormalEquations {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -120,8 +118,6 @@ std::optional<Registration> GaussNewton(const RegistrationOptions& options,
     const Eigen::Vector3d step = solver.solve(equations.b);
     pose =
         Rigid2(pose.translation() + step.head<2>(), pose.rotation() + step.z());
-    if (step.norm() < kConverged && scale == options.final_kernel_scale_meters)
-      break;
   }
   NormalEquations equations;
   add_residuals(pose, options.final_kernel_scale_meters, &equations);

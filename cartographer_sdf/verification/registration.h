@@ -38,7 +38,9 @@ struct Registration {
   Eigen::Matrix3d normal_matrix;
   // The same for the translation alone and for weights that sum to one: the
   // scatter of the normals of the walls that match. Its smaller eigenvalue is
-  // near 0 where one could slide along, 0.5 where walls face all ways.
+  // near 0 where one could slide along, 0.5 where walls face all ways. Walls
+  // that slant in the grid have steps, which raise it in a bare corridor to as
+  // much as 0.2.
   double min_scatter_eigenvalue;
   double sum_of_weights;
 };
@@ -52,7 +54,8 @@ struct Registration {
 
 // Points (a scan, in its node's frame) to the reference's field. The guess is
 // held by a prior of these standard deviations [m], [rad] against residuals of
-// `residual_sigma` [m], so that it stays where the walls leave it free.
+// `residual_sigma` [m], so that it stays where the walls leave it free. The
+// normal matrix includes the prior.
 struct PosePrior {
   double translation_sigma;
   double rotation_sigma;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "glog/logging.h"
@@ -53,9 +54,19 @@ double RankingScore(const RankingOptions& options,
 
 struct Ranked {
   double score;
-  size_t index;
   Rigid2 T_reference_query;
 };
+
+// Best first; equal ones in an order that is theirs, whatever the order in
+// which they came.
+bool IsBetter(const Ranked& a, const Ranked& b) {
+  const auto key = [](const Ranked& ranked) {
+    const Rigid2& pose = ranked.T_reference_query;
+    return std::make_tuple(-ranked.score, pose.rotation(),
+                           pose.translation().x(), pose.translation().y());
+  };
+  return key(a) < key(b);
+}
 
 bool IsNear(const Rigid2& a, const Rigid2& b, const Eigen::Vector2d& at,
             const double distance, const double rotation) {
@@ -67,9 +78,7 @@ bool IsNear(const Rigid2& a, const Rigid2& b, const Eigen::Vector2d& at,
 std::vector<Ranked> KeepBest(std::vector<Ranked> ranked, const size_t count,
                              const double min_score,
                              const Eigen::Vector2d& middle) {
-  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
-    return a.score != b.score ? a.score > b.score : a.index < b.index;
-  });
+  std::sort(ranked.begin(), ranked.end(), IsBetter);
   std::vector<Ranked> kept;
   for (const Ranked& candidate : ranked) {
     if (kept.size() >= count || candidate.score < min_score) break;
@@ -102,10 +111,10 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
                                    const std::vector<Rigid2>& hypotheses,
                                    const Eigen::Vector2d& middle) {
   std::vector<Ranked> coarse;
-  for (size_t k = 0; k < hypotheses.size(); ++k) {
-    coarse.push_back({RankingScore(options, reference, query, hypotheses[k],
+  for (const Rigid2& T_reference_query : hypotheses) {
+    coarse.push_back({RankingScore(options, reference, query, T_reference_query,
                                    options.num_coarse_points),
-                      k, hypotheses[k]});
+                      T_reference_query});
   }
   coarse = KeepBest(std::move(coarse), options.num_coarse_survivors,
                     options.min_coarse_score, middle);
@@ -113,7 +122,7 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
   const auto rank_fine = [&](const Rigid2& T_reference_query) {
     fine.push_back({RankingScore(options, reference, query, T_reference_query,
                                  options.num_fine_points),
-                    fine.size(), T_reference_query});
+                    T_reference_query});
   };
   for (const Ranked& survivor : coarse) rank_fine(survivor.T_reference_query);
   fine = KeepBest(std::move(fine), options.num_refined,

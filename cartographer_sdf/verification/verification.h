@@ -120,8 +120,9 @@ struct Verification {
   double margin;
 };
 
-// None where no hypothesis is worth refining. Rivals of the best pose are the
-// other hypotheses and what it becomes by self-similar poses of either submap.
+// None where no hypothesis is worth refining. Independent of the order of the
+// hypotheses. Rivals of the best pose are the other hypotheses and what it
+// becomes by self-similar poses of either submap.
 [[nodiscard]] std::optional<Verification> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,

@@ -1,0 +1,272 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/verification.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/building.h"
+
+namespace cartographer_sdf {
+namespace {
+
+using testing::BareRoom;
+using testing::Building;
+using testing::Furniture;
+using ::testing::Gt;
+using testing::IsPoseNear;
+using ::testing::Lt;
+using testing::SurfaceSeenFrom;
+
+constexpr double kDegree = M_PI / 180.;
+
+// Two submaps with a known pose.
+struct Pair {
+  SurfaceModel reference;
+  SurfaceModel query;
+  Rigid2 truth;  // T_reference_query
+};
+
+Pair MakePair(const Building& reference_building,
+              const testing::Viewpoints& reference_viewpoints,
+              const Building& query_building,
+              const testing::Viewpoints& query_viewpoints,
+              const Rigid2& T_world_reference = Rigid2(0.3, -0.2, 0.),
+              const Rigid2& T_world_query = Rigid2(-0.4, 0.6, 0.)) {
+  return {SurfaceSeenFrom(reference_building, T_world_reference,
+                          reference_viewpoints),
+          SurfaceSeenFrom(query_building, T_world_query, query_viewpoints),
+          T_world_reference.Inverse() * T_world_query};
+}
+
+// The west room of the two.
+Pair WestRoom() {
+  const Building building = testing::TwoRooms();
+  return MakePair(building, testing::WestRoomViewpoints(), building,
+                  {{2.2, 2.4}, {4.4, 3.2}, {6.3, 4.2}, {2., 1.}},
+                  Rigid2(3., 2., 0.4), Rigid2(4., 3., -1.));
+}
+
+// The truth, a little off, among wrong poses.
+std::vector<Rigid2> Hypotheses(const Rigid2& truth) {
+  return {truth * Rigid2(3., 1., 2.), truth * Rigid2(-1.5, 0., 0.),
+          truth * Rigid2(0.2, -0.1, 0.05), truth * Rigid2(0., 0., M_PI),
+          truth * Rigid2(0., 2., -1.6)};
+}
+
+std::optional<Verification> Verify(const Pair& pair,
+                                   const std::vector<Rigid2>& hypotheses) {
+  return VerifyHypotheses(VerificationOptions(), pair.reference, pair.query,
+                          hypotheses);
+}
+
+std::string VerdictOf(const std::optional<Verification>& verification) {
+  return verification ? VerdictName(verification->verdict) : "none";
+}
+
+Building Joined(Building a, const Building& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+TEST(VerifyHypothesesTest, AcceptsTheRightPose) {
+  const Pair pair = WestRoom();
+  const std::optional<Verification> verification =
+      Verify(pair, Hypotheses(pair.truth));
+  ASSERT_EQ(VerdictOf(verification), "accepted");
+  EXPECT_THAT(verification->T_reference_query,
+              IsPoseNear(pair.truth, 0.02, 0.3 * kDegree));
+  EXPECT_GE(verification->score, VerificationOptions().min_score);
+  EXPECT_GT(verification->agreement.query_in_reference.HitRatio(), 0.95);
+  EXPECT_GT(verification->agreement.reference_in_query.HitRatio(), 0.9);
+  EXPECT_GT(verification->agreement.overlap, 0.9);
+  EXPECT_NEAR(verification->agreement.overlap_area, 35., 6.);
+  EXPECT_GT(verification->margin, VerificationOptions().min_margin);
+  // 600 points of 5 cm: millimetres.
+  const Eigen::Vector3d sigmas =
+      verification->information.inverse().diagonal().cwiseSqrt();
+  EXPECT_THAT(sigmas.x(), ::testing::AllOf(Gt(1e-3), Lt(1e-2)));
+  EXPECT_THAT(sigmas.y(), ::testing::AllOf(Gt(1e-3), Lt(1e-2)));
+}
+
+TEST(VerifyHypothesesTest, NoneWithoutAHypothesisWorthRefining) {
+  const Pair pair = WestRoom();
+  EXPECT_FALSE(Verify(pair, {}).has_value());
+  EXPECT_FALSE(Verify(pair, {Rigid2(100., 0., 0.)}).has_value());
+  EXPECT_FALSE(Verify(pair, {pair.truth * Rigid2(2., 1., 0.8)}).has_value());
+}
+
+TEST(VerifyHypothesesTest, TooLittleOverlap) {
+  // A closet of 7 m^2, all of it seen.
+  const Building closet =
+      Joined(BareRoom(2.9, 2.6), {Furniture(0.7, 0.5, 0.8, 0.3, 0.2)});
+  const Pair pair = MakePair(closet, {{-0.5, 0.}}, closet, {{0., -0.6}});
+  const std::optional<Verification> verification = Verify(pair, {pair.truth});
+  EXPECT_EQ(VerdictOf(verification), "too_little_overlap");
+  EXPECT_LT(verification->agreement.overlap_area, 10.);
+}
+
+TEST(VerifyHypothesesTest, ContradictedByAWallInFreeSpace) {
+  const Building room = BareRoom(8., 6.);
+  const Building with_cupboard =
+      Joined(room, {Furniture(1., 0.5, 1.6, 1.6, 0.)});
+  const testing::Viewpoints viewpoints = {{-3., -2.}, {3., 2.}, {-2., 2.}};
+  const Pair pair = MakePair(room, viewpoints, with_cupboard, viewpoints);
+  const std::optional<Verification> verification = Verify(pair, {pair.truth});
+  EXPECT_EQ(VerdictOf(verification), "contradicted");
+  EXPECT_THAT(verification->T_reference_query,
+              IsPoseNear(pair.truth, 0.03, 0.5 * kDegree));
+  EXPECT_GT(verification->agreement.query_in_reference.ContradictionRatio(),
+            0.1);
+  EXPECT_NEAR(verification->agreement.reference_in_query.ContradictionRatio(),
+              0., 0.01);
+}
+
+TEST(VerifyHypothesesTest, UnlikelyWhereLittleAgrees) {
+  // As above, but with less in the way: no gate is hit, yet the sum speaks
+  // against it.
+  const Building hall = BareRoom(14., 2.4);
+  const Building with_box = Joined(hall, {Furniture(2., 0., 0.7, 0.7, 0.)});
+  const testing::Viewpoints viewpoints = {{-5., -0.7}, {5., 0.7}, {0., 0.}};
+  const Pair pair = MakePair(hall, viewpoints, with_box, viewpoints);
+  const std::optional<Verification> verification = Verify(pair, {pair.truth});
+  EXPECT_EQ(VerdictOf(verification), "unlikely");
+  EXPECT_LT(verification->score, VerificationOptions().min_score);
+}
+
+TEST(VerifyHypothesesTest, DegenerateInACorridor) {
+  const Building corridor = BareRoom(60., 2.);
+  const Pair pair =
+      MakePair(corridor, {{-1., 0.}, {1., 0.}}, corridor, {{0., 0.}, {2., 0.}});
+  const std::optional<Verification> verification = Verify(pair, {pair.truth});
+  EXPECT_EQ(VerdictOf(verification), "degenerate");
+  EXPECT_GT(verification->agreement.query_in_reference.HitRatio(), 0.95);
+}
+
+// Alike after a half turn.
+Building SymmetricRoom() {
+  return Joined(BareRoom(8., 6.), {Furniture(2., 1., 1., 0.6, 0.3),
+                                   Furniture(-2., -1., 1., 0.6, 0.3)});
+}
+
+TEST(VerifyHypothesesTest, AmbiguousInASymmetricRoom) {
+  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  const Pair pair =
+      MakePair(SymmetricRoom(), viewpoints, SymmetricRoom(), viewpoints,
+               Rigid2(0., 0., 0.2), Rigid2(0., 0., -0.1));
+  const Rigid2 turned = pair.truth * Rigid2(0., 0., M_PI);
+  const std::optional<Verification> verification =
+      Verify(pair, {pair.truth, turned});
+  EXPECT_EQ(VerdictOf(verification), "ambiguous");
+  EXPECT_LT(verification->margin, 0.05);
+  // Nothing else is wrong with either.
+  EXPECT_EQ(VerdictOf(Verify(pair, {pair.truth})), "accepted");
+  EXPECT_EQ(VerdictOf(Verify(pair, {turned})), "accepted");
+}
+
+TEST(VerifyHypothesesTest, OneThingBreaksASymmetry) {
+  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  const Building room =
+      Joined(SymmetricRoom(), {Furniture(2.6, -1.6, 0.9, 0.9, 0.2)});
+  const Pair pair = MakePair(room, viewpoints, room, viewpoints);
+  const std::optional<Verification> verification =
+      Verify(pair, {pair.truth * Rigid2(0., 0., M_PI), pair.truth});
+  EXPECT_EQ(VerdictOf(verification), "accepted");
+  EXPECT_THAT(verification->T_reference_query,
+              IsPoseNear(pair.truth, 0.03, 0.5 * kDegree));
+}
+
+void ExpectSame(const Verification& a, const Verification& b) {
+  EXPECT_EQ(a.verdict, b.verdict);
+  EXPECT_EQ(a.T_reference_query.translation(),
+            b.T_reference_query.translation());
+  EXPECT_EQ(a.T_reference_query.rotation(), b.T_reference_query.rotation());
+  EXPECT_EQ(a.information, b.information);
+  EXPECT_EQ(a.score, b.score);
+  EXPECT_EQ(a.margin, b.margin);
+}
+
+TEST(VerifyHypothesesTest, DoesNotDependOnTheOrderOfHypotheses) {
+  // A grid of poses of which many score the same: the room is seen twice by
+  // the same grid, so that shifts to either side are equally bad.
+  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  const Pair pair = MakePair(SymmetricRoom(), viewpoints, SymmetricRoom(),
+                             viewpoints, Rigid2(), Rigid2());
+  std::vector<Rigid2> hypotheses;
+  for (const double yaw : {0., M_PI}) {
+    for (int x = -5; x <= 5; ++x) {
+      for (int y = -5; y <= 5; ++y) {
+        hypotheses.emplace_back(0.35 * x, 0.35 * y, yaw);
+      }
+    }
+  }
+  const std::optional<Verification> expected = Verify(pair, hypotheses);
+  ASSERT_TRUE(expected.has_value());
+  ExpectSame(*expected, *Verify(pair, hypotheses));
+  for (size_t shift = 0; shift < hypotheses.size(); shift += 40) {
+    std::vector<Rigid2> permuted = hypotheses;
+    std::rotate(permuted.begin(), permuted.begin() + shift, permuted.end());
+    if (shift % 80 == 0) std::reverse(permuted.begin(), permuted.end());
+    const std::optional<Verification> verification = Verify(pair, permuted);
+    ASSERT_TRUE(verification.has_value());
+    ExpectSame(*expected, *verification);
+  }
+}
+
+TEST(AgreementTest, QualityFallsWithContradictions) {
+  Agreement agreement;
+  agreement.query_in_reference = {100., 90., 2., 0.};
+  agreement.reference_in_query = {50., 40., 2., 0.};
+  agreement.overlap_area = 0.;
+  EXPECT_NEAR(agreement.Quality(), 0.5 * (0.9 + 0.8) - 0.02 - 0.04, 1e-12);
+  agreement.overlap_area = std::exp(1.) - 1.;
+  EXPECT_NEAR(agreement.Quality(), 0.79 + 0.07, 1e-12);
+}
+
+TEST(ScoreTest, IsLinearInItsTerms) {
+  Agreement agreement;
+  agreement.query_in_reference = {100., 90., 2., 0.};
+  agreement.reference_in_query = {50., 40., 2., 0.};
+  agreement.overlap_area = 49.;
+  agreement.overlap = 0.7;
+  agreement.min_scatter_eigenvalue = 0.16;
+  const ScoreWeights weights{1., 10., 100., 2., 3., 5., 7., -4.};
+  EXPECT_NEAR(Score(weights, agreement, 0.1),
+              0.85 + 10. * 0.03 + 100. * 0.04 + 2. * std::log(50.) +
+                  3. * std::log(0.75) + 5. * 0.4 + 0.7 - 4.,
+              1e-12);
+}
+
+TEST(VerdictTest, HasANameForEach) {
+  EXPECT_STREQ(VerdictName(Verdict::kAccepted), "accepted");
+  EXPECT_STREQ(VerdictName(Verdict::kTooLittleOverlap), "too_little_overlap");
+  EXPECT_STREQ(VerdictName(Verdict::kContradicted), "contradicted");
+  EXPECT_STREQ(VerdictName(Verdict::kUnlikely), "unlikely");
+  EXPECT_STREQ(VerdictName(Verdict::kDegenerate), "degenerate");
+  EXPECT_STREQ(VerdictName(Verdict::kAmbiguous), "ambiguous");
+}
+
+TEST(VerificationOptionsTest, AreValidated) {
+  EXPECT_EQ(Validate(VerificationOptions()), "");
+  const auto error = [](const std::function<void(VerificationOptions*)>& set) {
+    VerificationOptions options;
+    set(&options);
+    return Validate(options);
+  };
+  EXPECT_NE(error([](auto* o) { o->num_agreement_points = 0; }), "");
+  EXPECT_NE(error([](auto* o) { o->ranking.num_refined = 0; }), "");
+  EXPECT_NE(error([](auto* o) { o->ranking.hit_distance_meters = 0.6; }), "");
+  EXPECT_NE(error([](auto* o) { o->agreement.hit_distance_meters = NAN; }), "");
+  EXPECT_NE(error([](auto* o) { o->min_margin = -1.; }), "");
+  EXPECT_NE(error([](auto* o) { o->registration.num_iterations = 0; }), "");
+}
+
+}  // namespace
+}  // namespace cartographer_sdf
