@@ -27,9 +27,7 @@ class NormalNumbers {
     return sigma * std::sqrt(-2. * std::log(u)) * std::cos(2. * M_PI * v);
   }
   // In [0, count).
-  int Index(const int count) {
-    return static_cast<int>(Uniform() * count);
-  }
+  int Index(const int count) { return static_cast<int>(Uniform() * count); }
 
  private:
   // In [0, 1).
