@@ -97,7 +97,7 @@ SDF_GLOBAL_CONSTRAINTS = {
           -- (hits - weight * contradictions) / points. Larger: faster, less
           -- recall.
           min_coarse_score = 0.3,
-          min_fine_score = 0.45,
+          min_fine_score = 0.55,
         },
         -- Refinement of a pose on the distance fields.
         registration = {

@@ -49,28 +49,37 @@ struct FieldSample {
   Eigen::Vector2d gradient;  // in the grid frame, dimensionless
 };
 
-// Bilinear interpolation at a point of the *grid* frame and its gradient; none
-// outside the centres of the outermost cells. Inline: the inner loop of
-// verification.
-[[nodiscard]] inline std::optional<FieldSample> SampleField(
-    const DistanceField& field, const Eigen::Vector2d& p_grid) {
-  const Eigen::Vector2d cells = field.geometry.GridToCells(p_grid);
+// Bilinear interpolation at a point of the *grid* frame and its gradient, of a
+// field whose cells are distance(i, j) [m]; none outside the centres of the
+// outermost cells. Inline: the inner loop of verification.
+template <typename Distance>
+[[nodiscard]] inline std::optional<FieldSample> InterpolateField(
+    const CellGeometry& geometry, const Eigen::Vector2d& p_grid,
+    const Distance& distance) {
+  const Eigen::Vector2d cells = geometry.GridToCells(p_grid);
   const double fi = std::floor(cells.x()), fj = std::floor(cells.y());
-  if (!(fi >= 0. && fj >= 0. && fi + 1. < field.geometry.size.x() &&
-        fj + 1. < field.geometry.size.y())) {
+  if (!(fi >= 0. && fj >= 0. && fi + 1. < geometry.size.x() &&
+        fj + 1. < geometry.size.y())) {
     return std::nullopt;
   }
   const Eigen::Index i = static_cast<Eigen::Index>(fi);
   const Eigen::Index j = static_cast<Eigen::Index>(fj);
   const double u = cells.x() - fi, v = cells.y() - fj;
-  const double f00 = field.distance(i, j), f10 = field.distance(i + 1, j);
-  const double f01 = field.distance(i, j + 1);
-  const double f11 = field.distance(i + 1, j + 1);
+  const double f00 = distance(i, j), f10 = distance(i + 1, j);
+  const double f01 = distance(i, j + 1), f11 = distance(i + 1, j + 1);
   const double bottom = f00 + u * (f10 - f00), top = f01 + u * (f11 - f01);
   const double along_x = (1. - v) * (f10 - f00) + v * (f11 - f01);
   return FieldSample{
       bottom + v * (top - bottom),
-      Eigen::Vector2d(along_x, top - bottom) / field.geometry.resolution};
+      Eigen::Vector2d(along_x, top - bottom) / geometry.resolution};
+}
+
+[[nodiscard]] inline std::optional<FieldSample> SampleField(
+    const DistanceField& field, const Eigen::Vector2d& p_grid) {
+  return InterpolateField(field.geometry, p_grid,
+                          [&field](const Eigen::Index i, const Eigen::Index j) {
+                            return static_cast<double>(field.distance(i, j));
+                          });
 }
 
 }  // namespace cartographer_sdf

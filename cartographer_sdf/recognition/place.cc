@@ -22,14 +22,17 @@ std::optional<Place> DescribePlace(const PlaceOptions& options,
                                    const SubmapId& id,
                                    const OccupancyGrid& grid) {
   CHECK_EQ(Validate(options), "");
-  std::optional<SurfaceModel> surface = MakeSurfaceModel(options.field, grid);
+  const std::optional<DistanceField> field =
+      MakeDistanceField(options.field, grid);
+  if (!field) return std::nullopt;
+  std::optional<SurfaceModel> surface =
+      MakeSurfaceModel(options.field, grid, *field);
   if (!surface) return std::nullopt;
-  const DistanceField& field = surface->field;
   const Eigen::ArrayXXf smoothed =
-      SmoothField(field, options.keypoint.smoothing_sigma_cells);
+      SmoothField(*field, options.keypoint.smoothing_sigma_cells);
   FeatureSet features =
-      DescribeKeypoints(options.descriptor, field, smoothed,
-                        DetectKeypoints(options.keypoint, field, smoothed));
+      DescribeKeypoints(options.descriptor, *field, smoothed,
+                        DetectKeypoints(options.keypoint, *field, smoothed));
   return Place{id, *std::move(surface), std::move(features)};
 }
 

@@ -29,9 +29,6 @@ DEFINE_string(relations, "",
 DEFINE_double(seconds_per_scan, 0.1,
               "Scan i of the relations has the stamp 1e9 + i * this in the "
               "map [s].");
-DEFINE_string(truth, "",
-              "True poses of submaps and nodes, a CSV file with kind, "
-              "trajectory, index, x, y, yaw.");
 DEFINE_string(matches, "", "Matches to score, as `match` writes them.");
 DEFINE_string(query_truth, "",
               "True poses of the second map, in the world of the first.");

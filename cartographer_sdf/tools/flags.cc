@@ -16,6 +16,10 @@ DEFINE_string(query, "",
               "Another map, whose submaps are searched in those of --input. "
               "None if empty: the submaps of --input in each other.");
 DEFINE_string(output, "", "The file to write.");
+DEFINE_string(
+    truth, "",
+    "True poses, lines of kind,trajectory,index,x,y,yaw: read by evaluate, "
+    "written by simulate.");
 DEFINE_string(report, "",
               "Directory for a report as an HTML page (index.html); made where "
               "it is missing. None if empty.");

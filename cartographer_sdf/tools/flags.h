@@ -16,6 +16,7 @@
 DECLARE_string(input);
 DECLARE_string(query);
 DECLARE_string(output);
+DECLARE_string(truth);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);

@@ -16,9 +16,11 @@ Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
 Subcommand Info();
 Subcommand MatchSubcommand();
+Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(), Info()};
+  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(),
+          SimulateSubcommand(), Info()};
 }
 
 absl::Status UsageError(const std::string& message) {

@@ -7,6 +7,12 @@
 #include <cmath>
 
 namespace cartographer_sdf {
+namespace {
+
+// A sample of this size gives a half overlap to 2 %.
+constexpr size_t kMaxNumOverlapPoints = 1000;
+
+}  // namespace
 
 std::string Validate(const AgreementOptions& options) {
   if (!(options.hit_distance_meters > 0. &&
@@ -22,14 +28,12 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const std::vector<SurfacePoint>& points,
                                    const Rigid2& T_model_points,
                                    const size_t max_num_points) {
-  const DistanceField& field = model.field;
-  const CellGeometry& geometry = field.geometry;
+  const CellGeometry& geometry = model.geometry;
   const Rigid2 T_grid_points =
       geometry.T_submap_grid.Inverse() * T_model_points;
   const Eigen::Matrix2d R = T_grid_points.RotationMatrix();
-  const float hit = static_cast<float>(options.hit_distance_meters);
-  const float contradiction =
-      static_cast<float>(options.contradiction_distance_meters);
+  const double hit = options.hit_distance_meters;
+  const double contradiction = options.contradiction_distance_meters;
   DirectedAgreement result;
   const size_t count = std::min(max_num_points, points.size());
   for (size_t k = 0; k < count; ++k) {
@@ -44,16 +48,17 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
     }
     const Eigen::Index i = static_cast<Eigen::Index>(x);
     const Eigen::Index j = static_cast<Eigen::Index>(y);
-    const float distance = std::abs(field.distance(i, j));
+    const SurfaceCell& cell = model.cells(i, j);
+    const double distance = 1e-3 * std::abs(cell.distance);
     // Walls border on the unknown, so a hit may well lie in it.
     if (distance <= hit) {
       result.num_points += wall.weight;
       result.hits += wall.weight;
       result.squared_distance += wall.weight * distance * distance;
-    } else if (field.observed(i, j)) {
+    } else if (cell.observed) {
       result.num_points += wall.weight;
       if (distance > contradiction) {
-        result.contradictions += wall.weight * model.free(i, j) / 255.;
+        result.contradictions += wall.weight * cell.free / 255.;
       }
     }
   }
@@ -71,20 +76,25 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
                    const Rigid2& T_reference_query) {
-  const CellGeometry& geometry = reference.field.geometry;
+  const CellGeometry& geometry = reference.geometry;
   const Rigid2 T_grid_query =
       geometry.T_submap_grid.Inverse() * T_reference_query;
   const Eigen::Matrix2d R = T_grid_query.RotationMatrix();
   int count = 0;
-  for (const Eigen::Vector2d& point : query.observed_points) {
+  const size_t num_points =
+      std::min(query.observed_points.size(), kMaxNumOverlapPoints);
+  for (size_t k = 0; k < num_points; ++k) {
+    const Eigen::Vector2d& point = query.observed_points[k];
     const Eigen::Array2i cell =
         ((R * point + T_grid_query.translation()).array() / geometry.resolution)
             .floor()
             .cast<int>();
     count +=
-        geometry.Contains(cell) && reference.field.observed(cell.x(), cell.y());
+        geometry.Contains(cell) && reference.cells(cell.x(), cell.y()).observed;
   }
-  return count * query.area_per_observed_point;
+  return count * query.area_per_observed_point *
+         static_cast<double>(query.observed_points.size()) /
+         static_cast<double>(num_points);
 }
 
 }  // namespace cartographer_sdf

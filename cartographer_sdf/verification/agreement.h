@@ -54,7 +54,7 @@ struct DirectedAgreement {
     const std::vector<SurfacePoint>& points, const Rigid2& T_model_points,
     size_t max_num_points);
 
-// Area observed by both [m^2], by the query's observed points.
+// Area observed by both [m^2], by a sample of the query's observed points.
 [[nodiscard]] double OverlapArea(const SurfaceModel& reference,
                                  const SurfaceModel& query,
                                  const Rigid2& T_reference_query);

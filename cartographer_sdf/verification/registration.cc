@@ -39,12 +39,12 @@ Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
 
 // The distance to the middle of a wall: a wall's cells are its points, and the
 // field is zero on their edge, half a cell away.
-double Residual(const DistanceField& field, const FieldSample& sample) {
+double Residual(const SurfaceModel& field, const FieldSample& sample) {
   return sample.distance + 0.5 * field.geometry.resolution;
 }
 
 // Points of the frame that moves, against a field that stands.
-void AddForward(const DistanceField& field,
+void AddForward(const SurfaceModel& field,
                 const std::vector<SurfacePoint>& points, const size_t count,
                 const Rigid2& T_field_points, const double scale,
                 NormalEquations* const equations) {
@@ -55,7 +55,7 @@ void AddForward(const DistanceField& field,
       field.geometry.T_submap_grid.RotationMatrix();
   const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
   for (size_t k = 0; k < count; ++k) {
-    const std::optional<FieldSample> sample = SampleField(
+    const std::optional<FieldSample> sample = SampleSurface(
         field, R * points[k].position + T_grid_points.translation());
     if (!sample) continue;
     const double residual = Residual(field, *sample);
@@ -68,7 +68,7 @@ void AddForward(const DistanceField& field,
 }
 
 // Points that stand, against a field of the frame that moves.
-void AddBackward(const DistanceField& field,
+void AddBackward(const SurfaceModel& field,
                  const std::vector<SurfacePoint>& points, const size_t count,
                  const Rigid2& T_points_field, const double scale,
                  NormalEquations* const equations) {
@@ -80,8 +80,8 @@ void AddBackward(const DistanceField& field,
   for (size_t k = 0; k < count; ++k) {
     const Eigen::Vector2d p_field =
         R_field_points * points[k].position + T_field_points.translation();
-    const std::optional<FieldSample> sample =
-        SampleField(field, R_grid_field * p_field + T_grid_field.translation());
+    const std::optional<FieldSample> sample = SampleSurface(
+        field, R_grid_field * p_field + T_grid_field.translation());
     if (!sample) continue;
     const double residual = Residual(field, *sample);
     const Eigen::Vector2d gradient =
@@ -160,10 +160,10 @@ std::optional<Registration> RegisterSubmaps(
       options, guess_T_reference_query,
       [&](const Rigid2& pose, const double scale,
           NormalEquations* const equations) {
-        AddForward(reference.field, query.walls, Count(options, query.walls),
-                   pose, scale, equations);
-        AddBackward(query.field, reference.walls,
-                    Count(options, reference.walls), pose, scale, equations);
+        AddForward(reference, query.walls, Count(options, query.walls), pose,
+                   scale, equations);
+        AddBackward(query, reference.walls, Count(options, reference.walls),
+                    pose, scale, equations);
       });
 }
 
@@ -177,21 +177,21 @@ std::optional<Registration> RegisterPoints(
   const double per_radian = prior.residual_sigma / prior.rotation_sigma;
   const Eigen::Vector3d precision(per_meter * per_meter, per_meter * per_meter,
                                   per_radian * per_radian);
-  return GaussNewton(
-      options, guess_T_reference_points,
-      [&](const Rigid2& pose, const double scale,
-          NormalEquations* const equations) {
-        AddForward(reference.field, points, Count(options, points), pose, scale,
-                   equations);
-        const Eigen::Vector2d moved =
-            pose.translation() - guess_T_reference_points.translation();
-        const Eigen::Vector3d deviation(
-            moved.x(), moved.y(),
-            NormalizeAngle(pose.rotation() -
-                           guess_T_reference_points.rotation()));
-        equations->A.diagonal() += precision;
-        equations->b -= precision.cwiseProduct(deviation);
-      });
+  return GaussNewton(options, guess_T_reference_points,
+                     [&](const Rigid2& pose, const double scale,
+                         NormalEquations* const equations) {
+                       AddForward(reference, points, Count(options, points),
+                                  pose, scale, equations);
+                       const Eigen::Vector2d moved =
+                           pose.translation() -
+                           guess_T_reference_points.translation();
+                       const Eigen::Vector3d deviation(
+                           moved.x(), moved.y(),
+                           NormalizeAngle(pose.rotation() -
+                                          guess_T_reference_points.rotation()));
+                       equations->A.diagonal() += precision;
+                       equations->b -= precision.cwiseProduct(deviation);
+                     });
 }
 
 }  // namespace cartographer_sdf

@@ -21,6 +21,12 @@ constexpr float kCertaintyRange = 0.25f;
 // About one observed point for each square of this side [m].
 constexpr double kObservedPointSpacing = 0.25;
 
+int16_t ToMillimetres(const float meters) {
+  constexpr float kLimit = 32767.f;
+  return static_cast<int16_t>(
+      std::lround(std::clamp(1000.f * meters, -kLimit, kLimit)));
+}
+
 // Fisher-Yates with a fixed seed and draws of our own, as the standard's
 // shuffle differs between libraries.
 template <typename T>
@@ -36,12 +42,22 @@ void Mix(std::vector<T>* const items) {
 
 std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
                                              const OccupancyGrid& grid) {
-  std::optional<DistanceField> field = MakeDistanceField(options, grid);
+  const std::optional<DistanceField> field = MakeDistanceField(options, grid);
   if (!field) return std::nullopt;
+  return MakeSurfaceModel(options, grid, *field);
+}
+
+std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
+                                             const OccupancyGrid& grid,
+                                             const DistanceField& field) {
   SurfaceModel model;
-  model.field = *std::move(field);
-  const CellGeometry& geometry = model.field.geometry;
-  model.free.setZero(geometry.size.x(), geometry.size.y());
+  model.geometry = field.geometry;
+  const CellGeometry& geometry = model.geometry;
+  model.cells.resize(geometry.size.x(), geometry.size.y());
+  for (Eigen::Index k = 0; k < model.cells.size(); ++k) {
+    model.cells.data()[k] = {ToMillimetres(field.distance.data()[k]), 0,
+                             field.observed.data()[k]};
+  }
   const Eigen::Array2i margin = (geometry.size - grid.geometry.size) / 2;
   const int stride =
       std::max(1, static_cast<int>(std::lround(kObservedPointSpacing /
@@ -60,7 +76,7 @@ std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
       } else {
         const float certainty =
             std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
-        model.free(i + margin.x(), j + margin.y()) =
+        model.cells(i + margin.x(), j + margin.y()).free =
             static_cast<uint8_t>(std::lround(255.f * certainty));
       }
       if (i % stride == 0 && j % stride == 0) {

@@ -21,11 +21,18 @@ struct SurfacePoint {
   double weight;             // how surely it is occupied, in (0, 1]
 };
 
+// One cell of the distance field as it is kept: in four bytes, as verification
+// is bound by memory.
+struct SurfaceCell {
+  int16_t distance;  // signed distance to the nearest wall [mm], saturated
+  // How surely the cell is free, 0 (occupied or unknown) to 255.
+  uint8_t free;
+  bool observed;
+};
+
 struct SurfaceModel {
-  DistanceField field;
-  // How surely a cell is free, 0 (occupied or unknown) to 255; of the field's
-  // geometry.
-  Eigen::Array<uint8_t, Eigen::Dynamic, Eigen::Dynamic> free;
+  CellGeometry geometry;  // of the distance field
+  Eigen::Array<SurfaceCell, Eigen::Dynamic, Eigen::Dynamic> cells;
   // In a fixed, well mixed order: the first n are a fair sample of all.
   std::vector<SurfacePoint> walls;
   // Centres of a fair sample of the observed cells, submap frame [m], and the
@@ -38,9 +45,22 @@ struct SurfaceModel {
   std::vector<Rigid2> self_similar_poses;
 };
 
-// None where the field has none (see MakeDistanceField) or nothing is observed.
+// `field` is the grid's. None where the grid has no wall, or nothing observed.
+[[nodiscard]] std::optional<SurfaceModel> MakeSurfaceModel(
+    const FieldOptions& options, const OccupancyGrid& grid,
+    const DistanceField& field);
 [[nodiscard]] std::optional<SurfaceModel> MakeSurfaceModel(
     const FieldOptions& options, const OccupancyGrid& grid);
+
+// As SampleField, to half a millimetre.
+[[nodiscard]] inline std::optional<FieldSample> SampleSurface(
+    const SurfaceModel& model, const Eigen::Vector2d& p_grid) {
+  const CellGeometry& geometry = model.geometry;
+  return InterpolateField(geometry, p_grid,
+                          [&model](const Eigen::Index i, const Eigen::Index j) {
+                            return 1e-3 * model.cells(i, j).distance;
+                          });
+}
 
 }  // namespace cartographer_sdf
 

@@ -47,7 +47,7 @@ struct RankingOptions {
   // A hypothesis with a lower (hits - weight * contradictions) / points is
   // dropped. Larger: faster, less recall.
   double min_coarse_score = 0.3;
-  double min_fine_score = 0.45;
+  double min_fine_score = 0.55;
 };
 [[nodiscard]] std::string Validate(const RankingOptions& options);
 

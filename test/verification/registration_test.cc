@@ -73,13 +73,13 @@ struct WeightedDistance {
   double distance;
 };
 std::vector<std::optional<WeightedDistance>> Distances(
-    const DistanceField& field, const std::vector<SurfacePoint>& points,
+    const SurfaceModel& field, const std::vector<SurfacePoint>& points,
     const Rigid2& T_field_points) {
   std::vector<std::optional<WeightedDistance>> distances;
   for (size_t k = 0; k < points.size() && k < 300; ++k) {
     const std::optional<FieldSample> sample =
-        SampleField(field, field.geometry.T_submap_grid.Inverse() *
-                               (T_field_points * points[k].position));
+        SampleSurface(field, field.geometry.T_submap_grid.Inverse() *
+                                 (T_field_points * points[k].position));
     distances.emplace_back();
     if (sample) {
       distances.back() = {points[k].weight, sample->distance + 0.025};
@@ -90,9 +90,9 @@ std::vector<std::optional<WeightedDistance>> Distances(
 std::vector<std::optional<WeightedDistance>> BothWays(const TwoViews& views,
                                                       const Rigid2& pose) {
   std::vector<std::optional<WeightedDistance>> distances =
-      Distances(views.reference.field, views.query.walls, pose);
+      Distances(views.reference, views.query.walls, pose);
   for (const auto& distance :
-       Distances(views.query.field, views.reference.walls, pose.Inverse())) {
+       Distances(views.query, views.reference.walls, pose.Inverse())) {
     distances.push_back(distance);
   }
   return distances;

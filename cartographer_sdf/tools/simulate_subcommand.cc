@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <iostream>
+
+#include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/progress.h"
+#include "cartographer_sdf/tools/simulate.h"
+#include "cartographer_sdf/tools/subcommand.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(
+    map, "",
+    "Floor plan to drive through, a PGM with dark walls. If empty, an "
+    "office is invented.");
+DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
+DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
+DEFINE_uint32(seed, 1,
+              "Of the drive, its drift and the noise. Two sessions in one "
+              "building differ in it alone.");
+
+namespace cartographer_sdf {
+namespace {
+
+absl::Status RunSimulateOfFlags() {
+  SimulateArguments arguments;
+  arguments.output_path = FLAGS_output;
+  arguments.truth_path = FLAGS_truth;
+  if (!FLAGS_map.empty()) arguments.plan_path = FLAGS_map;
+  arguments.plan_resolution = FLAGS_map_resolution;
+  arguments.plan_seed = FLAGS_plan_seed;
+  arguments.drive_seed = FLAGS_seed;
+  absl::Status status;
+  {
+    Progress progress("simulate");
+    status = RunSimulate(arguments, progress.Callback());
+  }
+  if (status.ok()) std::cout << FLAGS_output << "\n" << FLAGS_truth << "\n";
+  return status;
+}
+
+}  // namespace
+
+Subcommand SimulateSubcommand() {
+  return Subcommand{
+      "simulate",
+      "make a map with unclosed loops, and its truth, out of nothing",
+      "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N]",
+      "Drives a robot with a ray-cast lidar and drifting odometry through a "
+      "building and writes what Cartographer would have saved without loop "
+      "closing, and the true poses of its submaps and nodes.",
+      {"output", "truth"},
+      {"map", "map_resolution", "plan_seed", "seed"},
+      &RunSimulateOfFlags};
+}
+
+}  // namespace cartographer_sdf
