@@ -398,7 +398,12 @@ std::vector<Rigid2> FindSelfSimilarPoses(
   for (const Candidate& candidate :
        RefineBest(options, model, model, distinct, middle)) {
     const Rigid2& pose = candidate.registration.T_reference_query;
-    if (poses.size() < kMaxNumSelfSimilarPoses &&
+    // Different hypotheses may have been refined to one pose.
+    const bool is_new = std::all_of(poses.begin(), poses.end(),
+                                    [&pose, &middle](const Rigid2& better) {
+                                      return IsDistinct(pose, better, middle);
+                                    });
+    if (poses.size() < kMaxNumSelfSimilarPoses && is_new &&
         IsDistinct(pose, Rigid2(), middle)) {
       poses.push_back(pose);
     }

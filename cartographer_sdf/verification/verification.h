@@ -129,7 +129,7 @@ struct Verification {
     const std::vector<Rigid2>& hypotheses_T_reference_query);
 
 // The poses among the hypotheses, refined, in which the submap resembles itself
-// and which are distinct from the identity; best first.
+// and which are distinct from the identity and from each other; best first.
 [[nodiscard]] std::vector<Rigid2> FindSelfSimilarPoses(
     const VerificationOptions& options, const SurfaceModel& model,
     const std::vector<Rigid2>& hypotheses);

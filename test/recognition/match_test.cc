@@ -170,6 +170,30 @@ TEST_P(MatchPlacesTest, NoneForPlacesWithoutFeatures) {
   EXPECT_FALSE(MatchPlaces(Options(), *post, *post).has_value());
 }
 
+TEST(FindSelfSimilaritiesTest, MakeTwinsAmbiguous) {
+  // Alike after a half turn.
+  testing::Building building = testing::BareRoom(9., 6.);
+  for (const double sign : {-1., 1.}) {
+    building.push_back(testing::Furniture(sign * 2.5, sign * 1., 1., 0.6, 0.3));
+    building.push_back(
+        testing::Furniture(sign * 1.1, -sign * 1.7, 0.5, 1.2, -0.5));
+  }
+  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  std::optional<Place> reference = DescribePlace(
+      PlaceOptions(), {0, 1},
+      testing::SeeFrom(building, Rigid2(0.3, 0.1, 0.4), viewpoints));
+  const std::optional<Place> query = DescribePlace(
+      PlaceOptions(), {0, 7},
+      testing::SeeFrom(building, Rigid2(-0.2, 0.5, -1.), viewpoints));
+  ASSERT_TRUE(reference.has_value() && query.has_value());
+  FindSelfSimilarities(MatchOptions(), &*reference);
+  EXPECT_FALSE(reference->surface.self_similar_poses.empty());
+  const std::optional<Match> match =
+      MatchPlaces(MatchOptions(), *reference, *query);
+  ASSERT_TRUE(match.has_value());
+  EXPECT_STREQ(VerdictName(match->verdict), "ambiguous");
+}
+
 TEST(MatchOptionsTest, AreValidated) {
   EXPECT_EQ(Validate(MatchOptions()), "");
   EXPECT_EQ(Validate(PaperMatchOptions()), "");

@@ -171,6 +171,44 @@ TEST(VerifyHypothesesTest, AmbiguousInASymmetricRoom) {
   EXPECT_EQ(VerdictOf(Verify(pair, {turned})), "accepted");
 }
 
+TEST(VerifyHypothesesTest, SelfSimilarPosesAreRivalsThatNobodyProposed) {
+  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  const Pair pair =
+      MakePair(SymmetricRoom(), viewpoints, SymmetricRoom(), viewpoints,
+               Rigid2(0., 0., 0.2), Rigid2(0., 0., -0.1));
+  ASSERT_EQ(VerdictOf(Verify(pair, {pair.truth})), "accepted");
+  for (const bool of_reference : {true, false}) {
+    Pair with_rival = pair;
+    (of_reference ? with_rival.reference : with_rival.query)
+        .self_similar_poses = {Rigid2(0., 0., M_PI)};
+    const std::optional<Verification> verification =
+        Verify(with_rival, {pair.truth});
+    EXPECT_EQ(VerdictOf(verification), "ambiguous");
+    EXPECT_LT(verification->margin, 0.05);
+  }
+}
+
+TEST(FindSelfSimilarPosesTest, FindsTheHalfTurnOfASymmetricRoom) {
+  const SurfaceModel model = SurfaceSeenFrom(
+      SymmetricRoom(), Rigid2(1., 2., 0.2), {{-3., 2.}, {3., -2.}, {0., 0.}});
+  const Rigid2 half_turn = Rigid2(1., 2., 0.2).Inverse() *
+                           Rigid2(0., 0., M_PI) * Rigid2(1., 2., 0.2);
+  const std::vector<Rigid2> poses = FindSelfSimilarPoses(
+      VerificationOptions(), model,
+      {Rigid2(), Rigid2(0.1, 0., 0.02), half_turn * Rigid2(0.2, 0.1, 0.05)});
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_THAT(poses[0], IsPoseNear(half_turn, 0.03, 0.5 * kDegree));
+}
+
+TEST(FindSelfSimilarPosesTest, NoneWhereNothingIsAlike) {
+  const Pair pair = WestRoom();
+  EXPECT_TRUE(FindSelfSimilarPoses(VerificationOptions(), pair.reference,
+                                   Hypotheses(Rigid2()))
+                  .empty());
+  EXPECT_TRUE(
+      FindSelfSimilarPoses(VerificationOptions(), pair.reference, {}).empty());
+}
+
 TEST(VerifyHypothesesTest, OneThingBreaksASymmetry) {
   const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
   const Building room =
