@@ -98,6 +98,9 @@ SDF_GLOBAL_CONSTRAINTS = {
           -- recall.
           min_coarse_score = 0.3,
           min_fine_score = 0.55,
+          -- Hypotheses worse than the best by more are not refined. Larger:
+          -- slower, more rivals are noticed.
+          max_fine_score_gap = 0.15,
         },
         -- Refinement of a pose on the distance fields.
         registration = {

@@ -84,6 +84,7 @@ void VisitOptions(Visitor& visit, RankingOptions& options) {
   visit("contradiction_weight", options.contradiction_weight);
   visit("min_coarse_score", options.min_coarse_score);
   visit("min_fine_score", options.min_fine_score);
+  visit("max_fine_score_gap", options.max_fine_score_gap);
 }
 
 template <typename Visitor>

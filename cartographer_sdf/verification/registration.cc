@@ -108,8 +108,12 @@ std::optional<Registration> GaussNewton(const RegistrationOptions& options,
   double scale = options.initial_kernel_scale_meters;
   for (int k = 0; k < options.num_iterations; ++k, scale *= shrink) {
     NormalEquations equations;
-    add_residuals(pose, scale, &equations);
-    if (equations.sum_of_weights < kMinSumOfWeights) return std::nullopt;
+    // A third of the points is enough to come near.
+    const int divisor = 2 * k < options.num_iterations ? 3 : 1;
+    add_residuals(pose, scale, divisor, &equations);
+    if (equations.sum_of_weights * divisor < kMinSumOfWeights) {
+      return std::nullopt;
+    }
     const Eigen::LDLT<Eigen::Matrix3d> solver(equations.A);
     if (solver.info() != Eigen::Success || !solver.isPositive() ||
         solver.rcond() < 1e-9) {
@@ -120,7 +124,7 @@ std::optional<Registration> GaussNewton(const RegistrationOptions& options,
         Rigid2(pose.translation() + step.head<2>(), pose.rotation() + step.z());
   }
   NormalEquations equations;
-  add_residuals(pose, options.final_kernel_scale_meters, &equations);
+  add_residuals(pose, options.final_kernel_scale_meters, 1, &equations);
   if (equations.sum_of_weights < kMinSumOfWeights) return std::nullopt;
   const Eigen::Matrix2d scatter =
       equations.A.topLeftCorner<2, 2>() / equations.sum_of_weights;
@@ -130,9 +134,11 @@ std::optional<Registration> GaussNewton(const RegistrationOptions& options,
                       equations.sum_of_weights};
 }
 
+// The first of the points are a fair sample of all.
 size_t Count(const RegistrationOptions& options,
-             const std::vector<SurfacePoint>& points) {
-  return std::min(points.size(), static_cast<size_t>(options.max_num_points));
+             const std::vector<SurfacePoint>& points, const int divisor) {
+  return std::min(points.size(), static_cast<size_t>(options.max_num_points)) /
+         divisor;
 }
 
 }  // namespace
@@ -156,15 +162,16 @@ std::string Validate(const RegistrationOptions& options) {
 std::optional<Registration> RegisterSubmaps(
     const RegistrationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& guess_T_reference_query) {
-  return GaussNewton(
-      options, guess_T_reference_query,
-      [&](const Rigid2& pose, const double scale,
-          NormalEquations* const equations) {
-        AddForward(reference, query.walls, Count(options, query.walls), pose,
-                   scale, equations);
-        AddBackward(query, reference.walls, Count(options, reference.walls),
-                    pose, scale, equations);
-      });
+  return GaussNewton(options, guess_T_reference_query,
+                     [&](const Rigid2& pose, const double scale,
+                         const int divisor, NormalEquations* const equations) {
+                       AddForward(reference, query.walls,
+                                  Count(options, query.walls, divisor), pose,
+                                  scale, equations);
+                       AddBackward(query, reference.walls,
+                                   Count(options, reference.walls, divisor),
+                                   pose, scale, equations);
+                     });
 }
 
 std::optional<Registration> RegisterPoints(
@@ -177,21 +184,21 @@ std::optional<Registration> RegisterPoints(
   const double per_radian = prior.residual_sigma / prior.rotation_sigma;
   const Eigen::Vector3d precision(per_meter * per_meter, per_meter * per_meter,
                                   per_radian * per_radian);
-  return GaussNewton(options, guess_T_reference_points,
-                     [&](const Rigid2& pose, const double scale,
-                         NormalEquations* const equations) {
-                       AddForward(reference, points, Count(options, points),
-                                  pose, scale, equations);
-                       const Eigen::Vector2d moved =
-                           pose.translation() -
-                           guess_T_reference_points.translation();
-                       const Eigen::Vector3d deviation(
-                           moved.x(), moved.y(),
-                           NormalizeAngle(pose.rotation() -
-                                          guess_T_reference_points.rotation()));
-                       equations->A.diagonal() += precision;
-                       equations->b -= precision.cwiseProduct(deviation);
-                     });
+  return GaussNewton(
+      options, guess_T_reference_points,
+      [&](const Rigid2& pose, const double scale, const int divisor,
+          NormalEquations* const equations) {
+        AddForward(reference, points, Count(options, points, divisor), pose,
+                   scale, equations);
+        const Eigen::Vector2d moved =
+            pose.translation() - guess_T_reference_points.translation();
+        const Eigen::Vector3d deviation(
+            moved.x(), moved.y(),
+            NormalizeAngle(pose.rotation() -
+                           guess_T_reference_points.rotation()));
+        equations->A.diagonal() += precision;
+        equations->b -= precision.cwiseProduct(deviation);
+      });
 }
 
 }  // namespace cartographer_sdf

@@ -133,8 +133,13 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
       rank_fine(TurnAbout(survivor.T_reference_query, middle, rotation));
     }
   }
-  return KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
+  fine = KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
                   middle);
+  while (!fine.empty() &&
+         fine.back().score < fine.front().score - options.max_fine_score_gap) {
+    fine.pop_back();
+  }
+  return fine;
 }
 
 Verdict Judge(const VerificationOptions& options,
@@ -279,8 +284,9 @@ std::string Validate(const RankingOptions& options) {
     return "hit_distance_meters must be positive and not above "
            "contradiction_distance_meters";
   }
-  if (!(options.contradiction_weight >= 0.)) {
-    return "contradiction_weight must not be negative";
+  if (!(options.contradiction_weight >= 0. &&
+        options.max_fine_score_gap >= 0.)) {
+    return "contradiction_weight and max_fine_score_gap must not be negative";
   }
   return "";
 }

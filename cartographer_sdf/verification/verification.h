@@ -48,6 +48,9 @@ struct RankingOptions {
   // dropped. Larger: faster, less recall.
   double min_coarse_score = 0.3;
   double min_fine_score = 0.55;
+  // Hypotheses that score worse than the best one by more than this are not
+  // refined: they can be neither right nor rivals.
+  double max_fine_score_gap = 0.15;
 };
 [[nodiscard]] std::string Validate(const RankingOptions& options);
 
