@@ -41,9 +41,6 @@ struct DistanceField {
 [[nodiscard]] std::optional<DistanceField> MakeDistanceField(
     const FieldOptions& options, const OccupancyGrid& grid);
 
-// The same cells with `margin` unknown ones added on each side.
-[[nodiscard]] OccupancyGrid Pad(const OccupancyGrid& grid, int margin);
-
 struct FieldSample {
   double distance;           // [m]
   Eigen::Vector2d gradient;  // in the grid frame, dimensionless
