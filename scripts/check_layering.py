@@ -34,7 +34,8 @@ OFFLINE = {
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
     "loop_closing": [*CORE, "pose_graph", "pbstream"],
     "config": [*CORE, "pose_graph", "loop_closing", "report/report_options.h"],
-    "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream"],
+    "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream",
+                   "proto"],
     "evaluation": [*CORE, "pose_graph", "pbstream"],
     "report": [*CORE, "pose_graph", "pbstream", "evaluation"],
 }

@@ -9,6 +9,25 @@
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
+namespace {
+
+// The same cells with `margin` more on each side.
+CellGeometry PadGeometry(const CellGeometry& geometry, const int margin) {
+  CellGeometry padded = geometry;
+  padded.size += 2 * margin;
+  const double shift = -margin * geometry.resolution;
+  padded.T_submap_grid = geometry.T_submap_grid * Rigid2(shift, shift, 0.);
+  return padded;
+}
+
+BoolArray PadWithFalse(const BoolArray& cells, const int margin) {
+  BoolArray padded = BoolArray::Constant(cells.rows() + 2 * margin,
+                                         cells.cols() + 2 * margin, false);
+  padded.block(margin, margin, cells.rows(), cells.cols()) = cells;
+  return padded;
+}
+
+}  // namespace
 
 std::string Validate(const FieldOptions& options) {
   if (!(options.occupied_probability > 0. &&
@@ -21,41 +40,33 @@ std::string Validate(const FieldOptions& options) {
   return "";
 }
 
-OccupancyGrid Pad(const OccupancyGrid& grid, const int margin) {
-  CellGeometry geometry = grid.geometry;
-  geometry.size += 2 * margin;
-  const double shift = -margin * geometry.resolution;
-  geometry.T_submap_grid = geometry.T_submap_grid * Rigid2(shift, shift, 0.);
-  OccupancyGrid padded = UnknownGrid(geometry);
-  padded.probability.block(margin, margin, grid.geometry.size.x(),
-                           grid.geometry.size.y()) = grid.probability;
-  padded.known.block(margin, margin, grid.geometry.size.x(),
-                     grid.geometry.size.y()) = grid.known;
-  return padded;
-}
-
 std::optional<DistanceField> MakeDistanceField(const FieldOptions& options,
                                                const OccupancyGrid& grid) {
   CHECK_EQ(Validate(options), "");
   const int margin = static_cast<int>(
       std::lround(options.padding_meters / grid.geometry.resolution));
-  OccupancyGrid padded = Pad(grid, margin);
-  const BoolArray occupied =
-      padded.known &&
-      (padded.probability > static_cast<float>(options.occupied_probability));
+  DistanceField field;
+  field.geometry = PadGeometry(grid.geometry, margin);
+  field.observed = PadWithFalse(grid.known, margin);
+  const BoolArray occupied = PadWithFalse(
+      grid.known &&
+          (grid.probability > static_cast<float>(options.occupied_probability)),
+      margin);
   if (!occupied.any()) return std::nullopt;
-  const float resolution = static_cast<float>(padded.geometry.resolution);
   // Between the centres of an occupied cell and its neighbour lies the edge,
   // half a cell from each.
-  Eigen::ArrayXXf distance =
-      SquaredDistanceTransform(occupied).cast<float>().sqrt() - 0.5f;
-  if (!occupied.all()) {
-    const Eigen::ArrayXXf depth =
-        SquaredDistanceTransform(!occupied).cast<float>().sqrt() - 0.5f;
-    distance = occupied.select(-depth, distance);
+  const float resolution = static_cast<float>(grid.geometry.resolution);
+  field.distance =
+      resolution *
+      (SquaredDistanceTransform(occupied).cast<float>().sqrt() - 0.5f);
+  if (occupied.all()) return field;
+  const Eigen::ArrayXXi squared_depth = SquaredDistanceTransform(!occupied);
+  for (Eigen::Index k = 0; k < occupied.size(); ++k) {
+    if (!occupied(k)) continue;
+    field.distance(k) =
+        resolution * (0.5f - std::sqrt(static_cast<float>(squared_depth(k))));
   }
-  return DistanceField{padded.geometry, resolution * distance,
-                       std::move(padded.known)};
+  return field;
 }
 
 }  // namespace cartographer_sdf

@@ -12,7 +12,6 @@
 #define CARTOGRAPHER_SDF_FIELD_DISTANCE_FIELD_H_
 
 #include <Eigen/Core>
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -41,9 +40,6 @@ struct DistanceField {
 [[nodiscard]] std::optional<DistanceField> MakeDistanceField(
     const FieldOptions& options, const OccupancyGrid& grid);
 
-// The same cells with `margin` unknown ones added on each side.
-[[nodiscard]] OccupancyGrid Pad(const OccupancyGrid& grid, int margin);
-
 struct FieldSample {
   double distance;           // [m]
   Eigen::Vector2d gradient;  // in the grid frame, dimensionless
@@ -57,14 +53,15 @@ template <typename Distance>
     const CellGeometry& geometry, const Eigen::Vector2d& p_grid,
     const Distance& distance) {
   const Eigen::Vector2d cells = geometry.GridToCells(p_grid);
-  const double fi = std::floor(cells.x()), fj = std::floor(cells.y());
-  if (!(fi >= 0. && fj >= 0. && fi + 1. < geometry.size.x() &&
-        fj + 1. < geometry.size.y())) {
+  if (!(cells.x() >= 0. && cells.y() >= 0. &&
+        cells.x() < geometry.size.x() - 1 &&
+        cells.y() < geometry.size.y() - 1)) {
     return std::nullopt;
   }
-  const Eigen::Index i = static_cast<Eigen::Index>(fi);
-  const Eigen::Index j = static_cast<Eigen::Index>(fj);
-  const double u = cells.x() - fi, v = cells.y() - fj;
+  const Eigen::Index i = static_cast<Eigen::Index>(cells.x());
+  const Eigen::Index j = static_cast<Eigen::Index>(cells.y());
+  const double u = cells.x() - static_cast<double>(i);
+  const double v = cells.y() - static_cast<double>(j);
   const double f00 = distance(i, j), f10 = distance(i + 1, j);
   const double f01 = distance(i, j + 1), f11 = distance(i + 1, j + 1);
   const double bottom = f00 + u * (f10 - f00), top = f01 + u * (f11 - f01);

@@ -3,7 +3,7 @@
 
 #include "cartographer_sdf/field/distance_transform.h"
 
-#include <cstdint>
+#include <algorithm>
 #include <vector>
 
 #include "glog/logging.h"
@@ -13,23 +13,27 @@ namespace {
 
 constexpr int kMaxSide = 32767;
 // Distance along one axis where a line holds no site: farther than any real
-// one, and its square plus another fits 64 bits.
-constexpr int kNoSite = 1 << 20;
+// one. All squared distances fit 32 bits.
+constexpr int kNoSite = kMaxSide + 1;
 
-// Distance along each column to the nearest true cell.
-Eigen::ArrayXXi ColumnDistances(const BoolArray& sites) {
-  const Eigen::Index rows = sites.rows();
-  Eigen::ArrayXXi distances(rows, sites.cols());
-  for (Eigen::Index j = 0; j < sites.cols(); ++j) {
-    int distance = kNoSite;
+// Distance along each row to the nearest true cell; whole columns at a time, as
+// they are contiguous.
+Eigen::ArrayXXi RowDistances(const BoolArray& sites) {
+  const Eigen::Index rows = sites.rows(), cols = sites.cols();
+  Eigen::ArrayXXi distances(rows, cols);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    distances(i, 0) = sites(i, 0) ? 0 : kNoSite;
+  }
+  for (Eigen::Index j = 1; j < cols; ++j) {
+    const bool* const site = &sites(0, j);
+    const int* const before = &distances(0, j - 1);
+    int* const distance = &distances(0, j);
     for (Eigen::Index i = 0; i < rows; ++i) {
-      distance = sites(i, j) ? 0 : std::min(distance + 1, kNoSite);
-      distances(i, j) = distance;
+      distance[i] = site[i] ? 0 : std::min(before[i] + 1, kNoSite);
     }
-    for (Eigen::Index i = rows - 1; i >= 0; --i) {
-      distance = std::min(distances(i, j), distance + 1);
-      distances(i, j) = distance;
-    }
+  }
+  for (Eigen::Index j = cols - 2; j >= 0; --j) {
+    distances.col(j) = distances.col(j).min(distances.col(j + 1) + 1);
   }
   return distances;
 }
@@ -37,56 +41,63 @@ Eigen::ArrayXXi ColumnDistances(const BoolArray& sites) {
 // Lower envelope of the parabolas (x - k)^2 + g[k]^2 for one line g.
 class LowerEnvelope {
  public:
-  explicit LowerEnvelope(const int size) : vertex_(size), begin_(size) {}
+  explicit LowerEnvelope(const int size)
+      : g_(size), vertex_(size), begin_(size) {}
 
-  // Replaces the line by the envelope's value at each of its cells.
-  void Evaluate(const Eigen::Ref<const Eigen::ArrayXi>& g,
-                Eigen::Ref<Eigen::ArrayXi> values) {
-    const int n = static_cast<int>(g.size());
-    int last = -1;
-    for (int k = 0; k < n; ++k) {
-      if (g[k] >= kNoSite) continue;
-      while (last >= 0 && Value(g, vertex_[last], begin_[last]) >
-                              Value(g, k, begin_[last])) {
-        --last;
+  // Replaces g, the line, by the envelope's value at each of its cells. Nothing
+  // reaches across a site, so each stretch between two is a line of its own.
+  void Evaluate(int* const line) {
+    const int n = static_cast<int>(g_.size());
+    std::copy(line, line + n, g_.begin());
+    for (int first = 0; first < n;) {
+      int last = first + 1;
+      while (last < n && g_[last] != 0) ++last;
+      if (last == first + 1 && g_[first] == 0) {
+        line[first] = 0;
+      } else {
+        EvaluateStretch(first, std::min(last + 1, n), line);
       }
-      if (last < 0) {
-        vertex_[++last] = k;
-        begin_[last] = 0;
-        continue;
-      }
-      const int begin = FirstBelow(g, vertex_[last], k);
-      if (begin < n) {
-        vertex_[++last] = k;
-        begin_[last] = begin;
-      }
-    }
-    for (int x = n - 1; x >= 0; --x) {
-      while (last > 0 && x < begin_[last]) --last;
-      values[x] = static_cast<int>(Value(g, vertex_[last], x));
+      first = last;
     }
   }
 
  private:
-  static int64_t Value(const Eigen::Ref<const Eigen::ArrayXi>& g, const int k,
-                       const int x) {
-    const int64_t along = x - k;
-    const int64_t across = g[k];
-    return along * along + across * across;
+  void EvaluateStretch(const int first, const int end, int* const values) {
+    int top = -1;
+    for (int k = first; k < end; ++k) {
+      if (g_[k] >= kNoSite) continue;
+      while (top >= 0 &&
+             Value(vertex_[top], begin_[top]) > Value(k, begin_[top])) {
+        --top;
+      }
+      const int begin = top < 0 ? first : FirstBelow(vertex_[top], k);
+      if (begin < end) {
+        vertex_[++top] = k;
+        begin_[top] = begin;
+      }
+    }
+    for (int x_end = end; top >= 0; --top) {
+      const int k = vertex_[top], across = g_[k] * g_[k];
+      for (int x = begin_[top]; x < x_end; ++x) {
+        values[x] = (x - k) * (x - k) + across;
+      }
+      x_end = begin_[top];
+    }
+  }
+
+  int Value(const int k, const int x) const {
+    return (x - k) * (x - k) + g_[k] * g_[k];
   }
 
   // The first cell where the parabola of `right` lies below that of `left`.
-  static int FirstBelow(const Eigen::Ref<const Eigen::ArrayXi>& g,
-                        const int left, const int right) {
-    const int64_t gl = g[left], gr = g[right];
-    const int64_t numerator = static_cast<int64_t>(right) * right -
-                              static_cast<int64_t>(left) * left + gr * gr -
-                              gl * gl;
-    const int64_t denominator = 2 * static_cast<int64_t>(right - left);
+  int FirstBelow(const int left, const int right) const {
+    const int numerator = right * right - left * left + g_[right] * g_[right] -
+                          g_[left] * g_[left];
     // Not negative: the caller dropped all that `right` beats at their begin.
-    return static_cast<int>(numerator / denominator) + 1;
+    return numerator / (2 * (right - left)) + 1;
   }
 
+  std::vector<int> g_;
   std::vector<int> vertex_;
   std::vector<int> begin_;
 };
@@ -97,14 +108,12 @@ Eigen::ArrayXXi SquaredDistanceTransform(const BoolArray& sites) {
   CHECK_LE(sites.rows(), kMaxSide);
   CHECK_LE(sites.cols(), kMaxSide);
   CHECK(sites.any()) << "the distance to nothing is undefined";
-  // Transposed, so that the second pass runs along memory as well.
-  const Eigen::ArrayXXi lines = ColumnDistances(sites).transpose();
-  Eigen::ArrayXXi squared(lines.rows(), lines.cols());
-  LowerEnvelope envelope(static_cast<int>(lines.rows()));
-  for (Eigen::Index i = 0; i < lines.cols(); ++i) {
-    envelope.Evaluate(lines.col(i), squared.col(i));
+  Eigen::ArrayXXi squared = RowDistances(sites);
+  LowerEnvelope envelope(static_cast<int>(sites.rows()));
+  for (Eigen::Index j = 0; j < sites.cols(); ++j) {
+    envelope.Evaluate(&squared(0, j));
   }
-  return squared.transpose();
+  return squared;
 }
 
 }  // namespace cartographer_sdf
