@@ -86,7 +86,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         ranking = {
           num_coarse_points = 40,
           num_fine_points = 150,
-          num_coarse_survivors = 20,
+          num_coarse_survivors = 15,
           num_refined = 5,
           -- [m] Walls this near to each other agree.
           hit_distance_meters = 0.3,

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/verification/agreement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace cartographer_sdf {
@@ -11,6 +12,38 @@ namespace {
 
 // A sample of this size gives a half overlap to 2 %.
 constexpr size_t kMaxNumOverlapPoints = 1000;
+
+constexpr size_t kChunkSize = 64;
+
+// Cells of a model under points of another frame.
+class CellLookup {
+ public:
+  CellLookup(const SurfaceModel& model, const Rigid2& T_model_points)
+      : model_(model) {
+    const Rigid2 T_grid_points =
+        model.geometry.T_submap_grid.Inverse() * T_model_points;
+    const double cells_per_meter = 1. / model.geometry.resolution;
+    rotation_ = cells_per_meter * T_grid_points.RotationMatrix();
+    translation_ = cells_per_meter * T_grid_points.translation();
+  }
+
+  // Null outside of the model.
+  [[nodiscard]] const SurfaceCell* Find(const Eigen::Vector2d& point) const {
+    const Eigen::Vector2d cell = rotation_ * point + translation_;
+    if (!(cell.x() >= 0. && cell.y() >= 0. &&
+          cell.x() < model_.geometry.size.x() &&
+          cell.y() < model_.geometry.size.y())) {
+      return nullptr;
+    }
+    return &model_.cells(static_cast<Eigen::Index>(cell.x()),
+                         static_cast<Eigen::Index>(cell.y()));
+  }
+
+ private:
+  const SurfaceModel& model_;
+  Eigen::Matrix2d rotation_;
+  Eigen::Vector2d translation_;
+};
 
 }  // namespace
 
@@ -28,37 +61,35 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const std::vector<SurfacePoint>& points,
                                    const Rigid2& T_model_points,
                                    const size_t max_num_points) {
-  const CellGeometry& geometry = model.geometry;
-  const Rigid2 T_grid_points =
-      geometry.T_submap_grid.Inverse() * T_model_points;
-  const Eigen::Matrix2d R = T_grid_points.RotationMatrix();
+  const CellLookup lookup(model, T_model_points);
   const double hit = options.hit_distance_meters;
   const double contradiction = options.contradiction_distance_meters;
   DirectedAgreement result;
   const size_t count = std::min(max_num_points, points.size());
-  for (size_t k = 0; k < count; ++k) {
-    const SurfacePoint& wall = points[k];
-    const Eigen::Vector2d p_grid =
-        R * wall.position + T_grid_points.translation();
-    const double x = std::floor(p_grid.x() / geometry.resolution);
-    const double y = std::floor(p_grid.y() / geometry.resolution);
-    if (!(x >= 0. && y >= 0. && x < geometry.size.x() &&
-          y < geometry.size.y())) {
-      continue;
+  std::array<const SurfaceCell*, kChunkSize> cells;
+  for (size_t begin = 0; begin < count; begin += kChunkSize) {
+    const size_t size = std::min(kChunkSize, count - begin);
+    // The cells lie far apart in memory: all are on their way before the first
+    // is looked at.
+    for (size_t k = 0; k < size; ++k) {
+      cells[k] = lookup.Find(points[begin + k].position);
+      __builtin_prefetch(cells[k]);
     }
-    const Eigen::Index i = static_cast<Eigen::Index>(x);
-    const Eigen::Index j = static_cast<Eigen::Index>(y);
-    const SurfaceCell& cell = model.cells(i, j);
-    const double distance = 1e-3 * std::abs(cell.distance);
-    // Walls border on the unknown, so a hit may well lie in it.
-    if (distance <= hit) {
-      result.num_points += wall.weight;
-      result.hits += wall.weight;
-      result.squared_distance += wall.weight * distance * distance;
-    } else if (cell.observed) {
-      result.num_points += wall.weight;
-      if (distance > contradiction) {
-        result.contradictions += wall.weight * cell.free / 255.;
+    for (size_t k = 0; k < size; ++k) {
+      if (cells[k] == nullptr) continue;
+      const SurfaceCell& cell = *cells[k];
+      const double weight = points[begin + k].weight;
+      const double distance = 1e-3 * std::abs(cell.distance);
+      // Walls border on the unknown, so a hit may well lie in it.
+      if (distance <= hit) {
+        result.num_points += weight;
+        result.hits += weight;
+        result.squared_distance += weight * distance * distance;
+      } else if (cell.observed) {
+        result.num_points += weight;
+        if (distance > contradiction) {
+          result.contradictions += weight * cell.free / 255.;
+        }
       }
     }
   }
@@ -76,21 +107,13 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
                    const Rigid2& T_reference_query) {
-  const CellGeometry& geometry = reference.geometry;
-  const Rigid2 T_grid_query =
-      geometry.T_submap_grid.Inverse() * T_reference_query;
-  const Eigen::Matrix2d R = T_grid_query.RotationMatrix();
-  int count = 0;
+  const CellLookup lookup(reference, T_reference_query);
   const size_t num_points =
       std::min(query.observed_points.size(), kMaxNumOverlapPoints);
+  int count = 0;
   for (size_t k = 0; k < num_points; ++k) {
-    const Eigen::Vector2d& point = query.observed_points[k];
-    const Eigen::Array2i cell =
-        ((R * point + T_grid_query.translation()).array() / geometry.resolution)
-            .floor()
-            .cast<int>();
-    count +=
-        geometry.Contains(cell) && reference.cells(cell.x(), cell.y()).observed;
+    const SurfaceCell* const cell = lookup.Find(query.observed_points[k]);
+    count += cell != nullptr && cell->observed;
   }
   return count * query.area_per_observed_point *
          static_cast<double>(query.observed_points.size()) /

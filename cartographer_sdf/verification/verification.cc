@@ -105,6 +105,14 @@ Rigid2 TurnAbout(const Rigid2& T_reference_query, const Eigen::Vector2d& at,
                 turned);
 }
 
+// Those whose score is worse than that of the first by more than the gap.
+void DropWorse(const double gap, std::vector<Ranked>* const ranked) {
+  while (!ranked->empty() &&
+         ranked->back().score < ranked->front().score - gap) {
+    ranked->pop_back();
+  }
+}
+
 std::vector<Ranked> RankHypotheses(const RankingOptions& options,
                                    const SurfaceModel& reference,
                                    const SurfaceModel& query,
@@ -127,6 +135,8 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
   for (const Ranked& survivor : coarse) rank_fine(survivor.T_reference_query);
   fine = KeepBest(std::move(fine), options.num_refined,
                   options.min_coarse_score, middle);
+  // Polishing gains less than this.
+  DropWorse(2. * options.max_fine_score_gap, &fine);
   const std::vector<Ranked> unpolished = fine;
   for (const Ranked& survivor : unpolished) {
     for (const double rotation : kPolishRotations) {
@@ -135,10 +145,7 @@ std::vector<Ranked> RankHypotheses(const RankingOptions& options,
   }
   fine = KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
                   middle);
-  while (!fine.empty() &&
-         fine.back().score < fine.front().score - options.max_fine_score_gap) {
-    fine.pop_back();
-  }
+  DropWorse(options.max_fine_score_gap, &fine);
   return fine;
 }
 

@@ -37,7 +37,7 @@ struct RankingOptions {
   int num_coarse_points = 40;
   int num_fine_points = 150;
   // Hypotheses that reach the fine ranking, and those that are refined.
-  int num_coarse_survivors = 20;
+  int num_coarse_survivors = 15;
   int num_refined = 5;
   // The tolerance of both: hypotheses are this wrong [m].
   double hit_distance_meters = 0.3;
