@@ -41,7 +41,7 @@ uint64_t PairSeed(const int seed, const SubmapId& reference,
   uint64_t hash = static_cast<uint64_t>(seed);
   for (const int value :
        {reference.trajectory, reference.index, query.trajectory, query.index}) {
-    // The finalising steps of SplitMix64 (Steele et al. 2014).
+    // The finalising steps of SplitMix64 ([Steele2014]).
     hash += static_cast<uint64_t>(value) + 0x9e3779b97f4a7c15u;
     hash = (hash ^ (hash >> 30)) * 0xbf58476d1ce4e5b9u;
     hash = (hash ^ (hash >> 27)) * 0x94d049bb133111ebu;

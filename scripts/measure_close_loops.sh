@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Measures close_loops and match on the real maps and writes
+# docs/results/DATE/close_loops.md. The maps are no part of the project; see
+# CONTRIBUTING.md.
+#
+# usage: measure_close_loops.sh [DIRECTORY OF THE MAPS, default ../shared/data]
+
+set -euo pipefail
+
+SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
+DATA_DIR="${1:-${SOURCE_DIR}/../shared/data}"
+PROGRAM="${BUILD_DIR}/cartographer_sdf"
+RESULT_DIR="${SOURCE_DIR}/docs/results/$(date +%Y-%m-%d)"
+REPORT="${RESULT_DIR}/close_loops.md"
+WORK_DIR="$(mktemp -d)"
+trap 'rm -rf "${WORK_DIR}"' EXIT
+
+[[ -d "${DATA_DIR}" ]] || { echo "no maps at ${DATA_DIR}" >&2; exit 1; }
+[[ -x "${PROGRAM}" ]] || { echo "build first: ${PROGRAM} is missing" >&2; exit 1; }
+mkdir -p "${RESULT_DIR}"
+
+# Prints a command as a reader would type it, and what it says.
+show() {
+  echo
+  echo '```'
+  echo "\$ cartographer_sdf $*" | sed -e "s#${DATA_DIR}/##g" -e "s#${WORK_DIR}/##g"
+  "${PROGRAM}" "$@" | sed -e "s#${WORK_DIR}/##g"
+  if [[ "$1" == close_loops ]]; then
+    # Again on one core, for the whole process.
+    /usr/bin/time -f 'whole process, one thread: %e s, %U s of CPU, %M kB at most' \
+      "${PROGRAM}" "$@" --threads 1 2>&1 >/dev/null | tail -n 1
+  fi
+  echo '```'
+}
+
+{
+  echo "# close_loops and match on real maps"
+  echo
+  echo "Made by \`scripts/measure_close_loops.sh\` on $(date +%Y-%m-%d), commit" \
+    "$(git -C "${SOURCE_DIR}" rev-parse --short HEAD)," \
+    "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores;" \
+    "options as shipped."
+  for name in intel aces mit_killian; do
+    map="${DATA_DIR}/${name}_open_loop.pbstream"
+    relations=()
+    [[ -f "${DATA_DIR}/${name}.relations" ]] && relations=(--relations "${DATA_DIR}/${name}.relations")
+    echo
+    echo "## ${name}"
+    show evaluate --input "${map}" --truth "${DATA_DIR}/${name}.truth.csv" "${relations[@]}"
+    show close_loops --input "${map}" --output "${WORK_DIR}/closed.pbstream" \
+      --closures "${WORK_DIR}/closures.csv"
+    show evaluate --input "${WORK_DIR}/closed.pbstream" \
+      --truth "${DATA_DIR}/${name}.truth.csv" "${relations[@]}"
+    show evaluate --input "${map}" --truth "${DATA_DIR}/${name}.truth.csv" \
+      --matches "${WORK_DIR}/closures.csv"
+    if [[ -f "${DATA_DIR}/${name}_stock.pbstream" ]]; then
+      echo
+      echo "Stock Cartographer with its own loop closing:"
+      show evaluate --input "${DATA_DIR}/${name}_stock.pbstream" \
+        --truth "${DATA_DIR}/${name}.truth.csv" "${relations[@]}"
+    fi
+  done
+  echo
+  echo "## All pairs, without injection"
+  for name in intel aces mit_killian willow_1 willow_2; do
+    map="${DATA_DIR}/${name}.pbstream"
+    [[ -f "${map}" ]] || map="${DATA_DIR}/${name}_open_loop.pbstream"
+    for method in sdf paper; do
+      echo
+      echo "${name}, ${method}:"
+      show match --input "${map}" --method "${method}" --output "${WORK_DIR}/matches.csv"
+      show evaluate --input "${map}" --truth "${DATA_DIR}/${name}.truth.csv" \
+        --matches "${WORK_DIR}/matches.csv"
+    done
+  done
+  echo
+  echo "## Maps that users saved"
+  for name in user_map_arena user_map_odometry user_map_two_sessions; do
+    show close_loops --input "${DATA_DIR}/${name}.pbstream" --output "${WORK_DIR}/closed.pbstream"
+  done
+} > "${REPORT}.tmp"
+mv "${REPORT}.tmp" "${REPORT}"
+echo "${REPORT}"
