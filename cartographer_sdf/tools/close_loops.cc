@@ -92,14 +92,18 @@ absl::Status RunCloseLoops() {
       CloseLoops(options->loop_closing, FLAGS_input, *frozen,
                  MakeExecutor(*num_threads), progress.Callback());
   if (!result.ok()) return result.status();
-  absl::Status status = WriteMap(FLAGS_input, FLAGS_output, result->pose_graph,
-                                 progress.Begin("write"));
-  if (status.ok() && !FLAGS_closures.empty()) {
+  // The map last: it stands for all having gone well.
+  absl::Status status;
+  if (!FLAGS_closures.empty()) {
     status = WriteClosures(FLAGS_closures, result->closures);
   }
   if (status.ok() && !FLAGS_report.empty()) {
     status = WriteCloseLoopsReport(FLAGS_report, FLAGS_input, *options, *result,
                                    progress.Begin("report"));
+  }
+  if (status.ok()) {
+    status = WriteMap(FLAGS_input, FLAGS_output, result->pose_graph,
+                      progress.Begin("write"));
   }
   if (!status.ok()) return status;
   PrintSummary(*result);
@@ -113,7 +117,7 @@ absl::Status RunCloseLoops() {
 Subcommand CloseLoopsSubcommand() {
   return Subcommand{
       "close_loops",
-      "find the loop closures of a map and optimise it with them",
+      "find the loop closures of a map and optimise it",
       "--input A.pbstream --output B.pbstream [--closures C.csv] "
       "[--report DIR]",
       "Compares every pair of submaps by the shape of their free space, "

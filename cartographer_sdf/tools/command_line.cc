@@ -10,6 +10,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
@@ -19,6 +20,15 @@
 
 namespace cartographer_sdf {
 namespace {
+
+// gflags prints doubles to the last digit.
+std::string ShortDefault(const gflags::CommandLineFlagInfo& info) {
+  double value = 0.;
+  if (info.type == "double" && absl::SimpleAtod(info.default_value, &value)) {
+    return absl::StrCat(value);
+  }
+  return info.default_value;
+}
 
 constexpr char kProgram[] = "cartographer_sdf";
 constexpr size_t kLineLength = 80;
@@ -117,7 +127,7 @@ std::string HelpOfFlag(const std::string& name, const bool is_required) {
       is_required ? " (required)"
       : info.default_value.empty()
           ? ""
-          : absl::StrCat(" (default: ", info.default_value, ")");
+          : absl::StrCat(" (default: ", ShortDefault(info), ")");
   return absl::StrCat("  --", name, " <", info.type, ">", remark, "\n",
                       Wrap(info.description, 6));
 }

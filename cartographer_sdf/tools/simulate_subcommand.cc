@@ -44,7 +44,7 @@ absl::Status RunSimulateOfFlags() {
 Subcommand SimulateSubcommand() {
   return Subcommand{
       "simulate",
-      "make a map with unclosed loops, and its truth, out of nothing",
+      "make a map with unclosed loops, and its truth",
       "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N]",
       "Drives a robot with a ray-cast lidar and drifting odometry through a "
       "building and writes what Cartographer would have saved without loop "

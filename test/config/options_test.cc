@@ -20,6 +20,15 @@ TEST(OptionsTest, ShippedFileEqualsTheDefaults) {
   EXPECT_EQ(FormatOptions(*options), FormatOptions(Options()));
 }
 
+TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
+  const auto options = LoadOptions({TEST_CONFIGURATION_DIRECTORY}, "paper.lua");
+  ASSERT_TRUE(options.ok()) << options.status();
+  Options paper;
+  paper.loop_closing.place = PaperPlaceOptions();
+  paper.loop_closing.match = PaperMatchOptions();
+  EXPECT_EQ(FormatOptions(*options), FormatOptions(paper));
+}
+
 TEST(OptionsTest, ReadsWhatItWrites) {
   Options options;
   options.report.map_picture_pixels = 777;

@@ -23,9 +23,9 @@ struct ProgramResult {
 
 // Runs the program as a process of its own, with files for its output.
 inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
-  const TemporaryDirectory directory;
-  const std::string output = directory.PathOf("output");
-  const std::string error = directory.PathOf("error");
+  const cartographer_sdf::testing::TemporaryDirectory directory;
+  const std::string output = directory.File("output");
+  const std::string error = directory.File("error");
   std::vector<std::string> words = {TEST_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

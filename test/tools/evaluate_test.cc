@@ -52,7 +52,7 @@ class EvaluateTest : public ::testing::Test {
     EXPECT_THAT(result.error, HasSubstr(problem));
   }
 
-  TemporaryDirectory directory_;
+  testing::TemporaryDirectory directory_;
   std::string map_;
   std::string truth_;
 };

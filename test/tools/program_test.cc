@@ -100,7 +100,7 @@ TEST(ProgramTest, TellsWhatIsWrongWithFiles) {
   EXPECT_THAT(Failure({"info", "--input", "/nowhere/a.pbstream"}, 1),
               AllOf(StartsWith("cartographer_sdf info: "),
                     HasSubstr("/nowhere/a.pbstream")));
-  const TemporaryDirectory directory;
+  const testing::TemporaryDirectory directory;
   const std::string path = directory.Write("b.pbstream", "garbage");
   EXPECT_THAT(Failure({"info", "--input=" + path}, 1), HasSubstr(path));
   EXPECT_THAT(Failure({"info", "-input", directory.path()}, 1),
@@ -162,7 +162,7 @@ TEST(FlagsTest, NumThreads) {
 TEST(FlagsTest, LoadsOptions) {
   const gflags::FlagSaver saver;
   EXPECT_TRUE(LoadOptionsOfFlags().ok()) << LoadOptionsOfFlags().status();
-  const TemporaryDirectory directory;
+  const testing::TemporaryDirectory directory;
   directory.Write("mine.lua",
                   "include \"sdf_global_constraints.lua\"\n"
                   "SDF_GLOBAL_CONSTRAINTS.report.map_picture_pixels = 321\n"

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The whole path as a user walks it: simulate, close_loops, evaluate, match.
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/evaluation/trajectory_error.h"
+#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/program.h"
+#include "test/testing/shared_data.h"
+#include "test/testing/temporary_directory.h"
+
+namespace cartographer_sdf {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class CloseLoopsTest : public ::testing::Test {
+ protected:
+  // Once for all tests: it takes some seconds.
+  static void SetUpTestSuite() {
+    directory_ = new testing::TemporaryDirectory();
+    const ProgramResult result =
+        RunTestProgram({"simulate", "--output", File("open.pbstream"),
+                        "--truth", File("truth.csv")});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+  }
+  static void TearDownTestSuite() { delete directory_; }
+
+  static std::string File(const std::string& name) {
+    return directory_->File(name);
+  }
+  static ProgramResult CloseLoops(const std::string& output,
+                                  std::vector<std::string> more) {
+    more.insert(more.begin(), {"close_loops", "--input", File("open.pbstream"),
+                               "--output", File(output)});
+    return RunTestProgram(more);
+  }
+  static double MeanNodeError(const std::string& map) {
+    const ProgramResult result =
+        RunTestProgram({"evaluate", "--input", File(map), "--truth",
+                        File("truth.csv"), "--csv", File(map + ".csv")});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    const std::string csv = directory_->Read(map + ".csv");
+    const size_t begin = csv.find("nodes,mean_m,");
+    EXPECT_NE(begin, std::string::npos) << csv;
+    return std::stod(csv.substr(begin + 13));
+  }
+
+  static testing::TemporaryDirectory* directory_;
+};
+
+testing::TemporaryDirectory* CloseLoopsTest::directory_ = nullptr;
+
+TEST_F(CloseLoopsTest, StraightensASimulatedMap) {
+  const ProgramResult result = CloseLoops(
+      "closed.pbstream",
+      {"--closures", File("closures.csv"), "--report", File("report")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  // No progress where nobody watches.
+  EXPECT_EQ(result.error, "");
+  EXPECT_THAT(result.output, HasSubstr("in_graph"));
+
+  const double before = MeanNodeError("open.pbstream");
+  const double after = MeanNodeError("closed.pbstream");
+  EXPECT_GT(before, 0.3);
+  // What local SLAM's noise leaves within submaps: 0.04 m.
+  EXPECT_LT(after, 0.1);
+
+  const auto truth = ReadTruth(File("truth.csv"));
+  const auto closures = ReadMatches(File("closures.csv"));
+  ASSERT_TRUE(truth.ok() && closures.ok());
+  EXPECT_GT(closures->size(), 20u);
+  for (const MatchRow& closure : *closures) {
+    EXPECT_TRUE(closure.accepted);
+    const Rigid2 T_reference_query =
+        truth->T_world_submap.at(closure.reference).Inverse() *
+        truth->T_world_submap.at(closure.query);
+    const Rigid2 error =
+        T_reference_query.Inverse() * closure.T_reference_query;
+    EXPECT_LT(error.translation().norm(), 0.5)
+        << closure.reference << " " << closure.query;
+    EXPECT_LT(std::abs(error.rotation()), 0.09);
+  }
+
+  const std::string page = directory_->Read("report/index.html");
+  EXPECT_THAT(
+      page, AllOf(HasSubstr("open.pbstream"), HasSubstr("Before"),
+                  HasSubstr("SDF_GLOBAL_CONSTRAINTS"), Not(HasSubstr("http"))));
+}
+
+TEST_F(CloseLoopsTest, DoesNotDependOnThreads) {
+  for (const std::string threads : {"1", "3"}) {
+    const ProgramResult result = CloseLoops(
+        threads + ".pbstream",
+        {"--threads", threads, "--closures", File(threads + ".csv")});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+  }
+  EXPECT_TRUE(directory_->Read("1.pbstream") == directory_->Read("3.pbstream"));
+  EXPECT_EQ(directory_->Read("1.csv"), directory_->Read("3.csv"));
+}
+
+TEST_F(CloseLoopsTest, KeepsFrozenTrajectories) {
+  const ProgramResult result =
+      CloseLoops("frozen.pbstream", {"--frozen_trajectories", "0"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto before = ReadMap(File("open.pbstream"));
+  const auto after = ReadMap(File("frozen.pbstream"));
+  ASSERT_TRUE(before.ok() && after.ok());
+  EXPECT_GT(after->pose_graph.constraints.size(),
+            before->pose_graph.constraints.size());
+  for (const auto& [id, node] : before->pose_graph.nodes) {
+    EXPECT_EQ(after->pose_graph.nodes.at(id).T_map_node.translation(),
+              node.T_map_node.translation());
+  }
+}
+
+TEST_F(CloseLoopsTest, LeavesAMapWithoutClosuresAsItIs) {
+  directory_->Write("strict.lua",
+                    "include \"sdf_global_constraints.lua\"\n"
+                    "SDF_GLOBAL_CONSTRAINTS.loop_closing.match.verification."
+                    "min_score = 1e6\n"
+                    "return SDF_GLOBAL_CONSTRAINTS\n");
+  const ProgramResult result = CloseLoops(
+      "same.pbstream", {"--configuration_directory", directory_->path(),
+                        "--configuration_basename", "strict.lua"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.output, HasSubstr("No loop closure was found"));
+  EXPECT_TRUE(directory_->Read("same.pbstream") ==
+              directory_->Read("open.pbstream"));
+}
+
+TEST_F(CloseLoopsTest, RefusesInOneLineAndWritesNothing) {
+  const struct {
+    std::vector<std::string> arguments;
+    int exit_code;
+    std::string problem;
+  } cases[] = {
+      {{"--configuration_basename", "paper.lua"}, 1, "match.method"},
+      {{"--configuration_basename", "none.lua"}, 1, "none.lua"},
+      {{"--configuration_directory", "/none"}, 1, "/none"},
+      {{"--frozen_trajectories", "one"}, 2, "one"},
+      {{"--threads", "-1"}, 2, "--threads"},
+      {{"--closures", "/none/closures.csv"}, 1, "/none/closures.csv"},
+  };
+  for (const auto& test : cases) {
+    const ProgramResult result = CloseLoops("never.pbstream", test.arguments);
+    EXPECT_EQ(result.exit_code, test.exit_code) << result.error;
+    EXPECT_THAT(result.error, HasSubstr(test.problem));
+    EXPECT_EQ(std::count(result.error.begin(), result.error.end(), '\n'), 1)
+        << result.error;
+    EXPECT_FALSE(std::filesystem::exists(File("never.pbstream")))
+        << test.problem;
+  }
+}
+
+TEST_F(CloseLoopsTest, MatchesByEitherMethod) {
+  for (const std::string method : {"sdf", "paper"}) {
+    const ProgramResult result =
+        RunTestProgram({"match", "--input", File("open.pbstream"), "--output",
+                        File(method + ".csv"), "--method", method});
+    ASSERT_EQ(result.exit_code, 0) << result.error;
+    const auto matches = ReadMatches(File(method + ".csv"));
+    ASSERT_TRUE(matches.ok()) << matches.status();
+    EXPECT_GT(
+        std::count_if(matches->begin(), matches->end(),
+                      [](const MatchRow& match) { return match.accepted; }),
+        20);
+    for (const MatchRow& match : *matches) {
+      EXPECT_TRUE(match.reference < match.query);
+    }
+  }
+}
+
+TEST_F(CloseLoopsTest, UserMapsRun) {
+  for (const std::string name :
+       {"user_map_arena", "user_map_odometry", "user_map_two_sessions"}) {
+    SKIP_WITHOUT_SHARED_DATA(name + ".pbstream");
+    const ProgramResult result = RunTestProgram(
+        {"close_loops", "--input", SharedDataPath(name + ".pbstream"),
+         "--output", File(name + ".pbstream"), "--report", File(name)});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_TRUE(ReadMap(File(name + ".pbstream")).ok());
+  }
+}
+
+}  // namespace
+}  // namespace cartographer_sdf
