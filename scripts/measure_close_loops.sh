@@ -78,6 +78,14 @@ show() {
     done
   done
   echo
+  echo "## Different buildings: every accepted match is wrong"
+  for pair in intel_open_loop:aces_open_loop willow_1:intel_open_loop aces_open_loop:willow_2 \
+    mit_killian_open_loop:willow_1 mit_killian_open_loop:intel_open_loop \
+    mit_killian_open_loop:aces_open_loop; do
+    show match --input "${DATA_DIR}/${pair%%:*}.pbstream" \
+      --query "${DATA_DIR}/${pair##*:}.pbstream" --output "${WORK_DIR}/matches.csv"
+  done
+  echo
   echo "## Maps that users saved"
   for name in user_map_arena user_map_odometry user_map_two_sessions; do
     show close_loops --input "${DATA_DIR}/${name}.pbstream" --output "${WORK_DIR}/closed.pbstream"
