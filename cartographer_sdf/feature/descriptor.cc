@@ -16,60 +16,116 @@ using Eigen::Index;
 
 constexpr double kMillimetresPerMetre = 1000.;
 
-struct WeightedGradient {
-  double orientation;  // grid frame, [0, 2 pi)
-  double weight;
+struct PolarGradient {
+  float orientation;  // grid frame, [0, 2 pi]
+  float magnitude;
 };
 
 struct Window {
-  std::vector<WeightedGradient> gradients;
-  double mean_distance = 0.;  // [m]
+  std::vector<PolarGradient> gradients;  // weighted
+  double mean_distance = 0.;             // [m]
 };
 
-// Adds `weight` to the two bins nearest to the angle, by their closeness. Bin k
-// is centred on k * 2 pi / n.
-void AddToHistogram(const double angle, const double weight,
-                    std::vector<double>* const histogram) {
-  const int n = static_cast<int>(histogram->size());
-  const double bin = angle * n / (2. * M_PI);
-  const double floor = std::floor(bin);
-  const int low = ((static_cast<int>(floor) % n) + n) % n;
-  const double fraction = bin - floor;
-  (*histogram)[low] += (1. - fraction) * weight;
-  (*histogram)[(low + 1) % n] += fraction * weight;
-}
+// Gradients by central differences. Windows overlap: each is computed once, at
+// the first use.
+class GradientCache {
+ public:
+  explicit GradientCache(const ArrayXXf& values)
+      : values_(values),
+        gradients_(values.size(), PolarGradient{0.f, kMissing}) {}
 
-// Gradients of the smoothed field and the mean distance within the radius of a
-// point given in (continuous) cells; what lies beyond the rim is left out.
+  // Of an inner cell.
+  const PolarGradient& At(const Index i, const Index j) {
+    PolarGradient& gradient = gradients_[j * values_.rows() + i];
+    if (gradient.magnitude == kMissing) {
+      const float x = 0.5f * (values_(i + 1, j) - values_(i - 1, j));
+      const float y = 0.5f * (values_(i, j + 1) - values_(i, j - 1));
+      const float angle = std::atan2(y, x);
+      gradient.orientation =
+          angle < 0.f ? angle + static_cast<float>(2. * M_PI) : angle;
+      gradient.magnitude = std::sqrt(x * x + y * y);
+    }
+    return gradient;
+  }
+
+ private:
+  static constexpr float kMissing = -1.f;
+
+  const ArrayXXf& values_;
+  std::vector<PolarGradient> gradients_;
+};
+
+// Bin k of n is centred on k * 2 pi / n.
+class CircularHistogram {
+ public:
+  explicit CircularHistogram(const int num_bins)
+      : num_bins_(num_bins),
+        bins_per_radian_(num_bins / (2. * M_PI)),
+        bins_(num_bins, 0.) {}
+
+  // Adds to the two bins nearest to the angle, in (-2 pi, 4 pi), by their
+  // closeness.
+  void Add(const double angle, const double weight) {
+    const double bin = angle * bins_per_radian_ + num_bins_;  // positive
+    int low = static_cast<int>(bin);
+    const double fraction = bin - low;
+    while (low >= num_bins_) low -= num_bins_;
+    bins_[low] += (1. - fraction) * weight;
+    bins_[low + 1 < num_bins_ ? low + 1 : 0] += fraction * weight;
+  }
+  const std::vector<double>& bins() const { return bins_; }
+
+ private:
+  const int num_bins_;
+  const double bins_per_radian_;
+  std::vector<double> bins_;
+};
+
+// The inner cells of one axis that lie within the radius of a centre, with
+// their squared distances and Gaussian weights.
+struct WindowAxis {
+  Index first;
+  std::vector<double> squared_distances;
+  std::vector<double> weights;
+
+  WindowAxis(const double centre, const double radius, const double sigma,
+             const Index size)
+      : first(std::max<Index>(1,
+                              static_cast<Index>(std::ceil(centre - radius)))) {
+    const Index last = std::min<Index>(
+        size - 2, static_cast<Index>(std::floor(centre + radius)));
+    for (Index k = first; k <= last; ++k) {
+      const double d = static_cast<double>(k) - centre;
+      squared_distances.push_back(d * d);
+      weights.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
+    }
+  }
+};
+
+// Gradients and the mean distance within the radius of a point given in
+// (continuous) cells; what lies beyond the rim is left out.
 Window ExtractWindow(const DescriptorOptions& options,
-                     const DistanceField& field, const ArrayXXf& smoothed,
-                     const Eigen::Vector2d& centre) {
+                     const DistanceField& field, const Eigen::Vector2d& centre,
+                     GradientCache* const gradients) {
   const double radius = options.radius_meters / field.geometry.resolution;
   const double sigma = options.gaussian_sigma_ratio * radius;
-  const double exponent = -0.5 / (sigma * sigma);
-  const auto first = [radius](const double c) {
-    return std::max<Index>(1, static_cast<Index>(std::ceil(c - radius)));
-  };
-  const auto last = [radius](const double c, const Index size) {
-    return std::min<Index>(size - 2,
-                           static_cast<Index>(std::floor(c + radius)));
-  };
+  const WindowAxis x(centre.x(), radius, sigma, field.distance.rows());
+  const WindowAxis y(centre.y(), radius, sigma, field.distance.cols());
   Window window;
+  window.gradients.reserve(x.weights.size() * y.weights.size());
   double sum = 0., sum_distance = 0.;
-  for (Index j = first(centre.y()); j <= last(centre.y(), smoothed.cols());
-       ++j) {
-    for (Index i = first(centre.x()); i <= last(centre.x(), smoothed.rows());
-         ++i) {
-      const double dx = static_cast<double>(i) - centre.x();
-      const double dy = static_cast<double>(j) - centre.y();
-      const double squared = dx * dx + dy * dy;
-      if (squared > radius * radius) continue;
-      const double gaussian = std::exp(exponent * squared);
-      const double gx = 0.5 * (smoothed(i + 1, j) - smoothed(i - 1, j));
-      const double gy = 0.5 * (smoothed(i, j + 1) - smoothed(i, j - 1));
-      const double angle = std::atan2(gy, gx);
-      window.gradients.push_back({angle < 0. ? angle + 2. * M_PI : angle,
-                                  gaussian * std::hypot(gx, gy)});
+  for (size_t b = 0; b < y.weights.size(); ++b) {
+    for (size_t a = 0; a < x.weights.size(); ++a) {
+      if (x.squared_distances[a] + y.squared_distances[b] > radius * radius) {
+        continue;
+      }
+      const Index i = x.first + static_cast<Index>(a);
+      const Index j = y.first + static_cast<Index>(b);
+      const double gaussian = x.weights[a] * y.weights[b];
+      const PolarGradient& gradient = gradients->At(i, j);
+      window.gradients.push_back(
+          {gradient.orientation,
+           static_cast<float>(gaussian) * gradient.magnitude});
       sum += gaussian;
       sum_distance += gaussian * field.distance(i, j);
     }
@@ -82,10 +138,12 @@ Window ExtractWindow(const DescriptorOptions& options,
 std::vector<double> DominantOrientations(const DescriptorOptions& options,
                                          const Window& window) {
   const int n = options.num_orientation_bins;
-  std::vector<double> raw(n, 0.), histogram(n);
-  for (const WeightedGradient& gradient : window.gradients) {
-    AddToHistogram(gradient.orientation, gradient.weight, &raw);
+  CircularHistogram sharp(n);
+  for (const PolarGradient& gradient : window.gradients) {
+    sharp.Add(gradient.orientation, gradient.magnitude);
   }
+  const std::vector<double>& raw = sharp.bins();
+  std::vector<double> histogram(n);
   for (int k = 0; k < n; ++k) {
     histogram[k] =
         0.25 * raw[(k + n - 1) % n] + 0.5 * raw[k] + 0.25 * raw[(k + 1) % n];
@@ -113,14 +171,14 @@ std::vector<double> DominantOrientations(const DescriptorOptions& options,
 
 Eigen::VectorXf Describe(const DescriptorOptions& options, const Window& window,
                          const double orientation) {
-  std::vector<double> histogram(options.num_bins, 0.);
-  for (const WeightedGradient& gradient : window.gradients) {
-    AddToHistogram(gradient.orientation - orientation, gradient.weight,
-                   &histogram);
+  CircularHistogram histogram(options.num_bins);
+  for (const PolarGradient& gradient : window.gradients) {
+    histogram.Add(gradient.orientation - orientation, gradient.magnitude);
   }
   Eigen::VectorXd descriptor(options.num_bins + 1);
   descriptor.head(options.num_bins) =
-      Eigen::Map<const Eigen::VectorXd>(histogram.data(), options.num_bins)
+      Eigen::Map<const Eigen::VectorXd>(histogram.bins().data(),
+                                        options.num_bins)
           .normalized();
   descriptor[options.num_bins] =
       options.distance_weight * kMillimetresPerMetre * window.mean_distance;
@@ -159,12 +217,14 @@ FeatureSet DescribeKeypoints(const DescriptorOptions& options,
                              const std::vector<Keypoint>& keypoints) {
   CHECK_EQ(Validate(options), "");
   const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
+  GradientCache gradients(smoothed);
   FeatureSet set;
   std::vector<Eigen::VectorXf> descriptors;
   for (const Keypoint& keypoint : keypoints) {
     const Window window = ExtractWindow(
-        options, field, smoothed,
-        field.geometry.GridToCells(T_grid_submap * keypoint.position));
+        options, field,
+        field.geometry.GridToCells(T_grid_submap * keypoint.position),
+        &gradients);
     for (const double orientation : DominantOrientations(options, window)) {
       set.features.push_back(
           {keypoint, NormalizeAngle(orientation - T_grid_submap.rotation())});

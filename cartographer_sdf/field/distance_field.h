@@ -12,7 +12,6 @@
 #define CARTOGRAPHER_SDF_FIELD_DISTANCE_FIELD_H_
 
 #include <Eigen/Core>
-#include <cmath>
 #include <optional>
 #include <string>
 
@@ -52,14 +51,15 @@ struct FieldSample {
 [[nodiscard]] inline std::optional<FieldSample> SampleField(
     const DistanceField& field, const Eigen::Vector2d& p_grid) {
   const Eigen::Vector2d cells = field.geometry.GridToCells(p_grid);
-  const double fi = std::floor(cells.x()), fj = std::floor(cells.y());
-  if (!(fi >= 0. && fj >= 0. && fi + 1. < field.geometry.size.x() &&
-        fj + 1. < field.geometry.size.y())) {
+  if (!(cells.x() >= 0. && cells.y() >= 0. &&
+        cells.x() < field.geometry.size.x() - 1 &&
+        cells.y() < field.geometry.size.y() - 1)) {
     return std::nullopt;
   }
-  const Eigen::Index i = static_cast<Eigen::Index>(fi);
-  const Eigen::Index j = static_cast<Eigen::Index>(fj);
-  const double u = cells.x() - fi, v = cells.y() - fj;
+  const Eigen::Index i = static_cast<Eigen::Index>(cells.x());
+  const Eigen::Index j = static_cast<Eigen::Index>(cells.y());
+  const double u = cells.x() - static_cast<double>(i);
+  const double v = cells.y() - static_cast<double>(j);
   const double f00 = field.distance(i, j), f10 = field.distance(i + 1, j);
   const double f01 = field.distance(i, j + 1);
   const double f11 = field.distance(i + 1, j + 1);
