@@ -4,9 +4,10 @@
 #include "cartographer_sdf/matching/hypotheses.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -82,24 +83,24 @@ class VoteSpace {
         num_rotations_(std::max(
             1, static_cast<int>(2. * M_PI / options.cluster_rotation))) {}
 
-  static uint64_t Bin(const int x, const int y, const int rotation) {
-    constexpr int kOffset = 1 << 20;
-    return (static_cast<uint64_t>(x + kOffset) << 42) |
-           (static_cast<uint64_t>(y + kOffset) << 20) |
-           static_cast<uint64_t>(rotation);
-  }
-  uint64_t BinOf(const float x, const float y, const float rotation) const {
-    return Bin(static_cast<int>(std::floor(x / distance_)),
-               static_cast<int>(std::floor(y / distance_)),
-               Rotation(static_cast<int>(
-                   std::floor((rotation + kPi) / (2.f * kPi) *
-                              static_cast<float>(num_rotations_)))));
-  }
-  int Rotation(const int bin) const {
-    return (bin + num_rotations_) % num_rotations_;
+  // The rotation lies in [-pi, pi]. No bin spans the cut at pi, so that means
+  // within a bin are means.
+  Vote MakeVote(const float x, const float y, const float rotation) const {
+    const int bin = static_cast<int>((rotation + kPi) / (2.f * kPi) *
+                                     static_cast<float>(num_rotations_));
+    return {(Along(x) << 42) | (Along(y) << 20) |
+                static_cast<uint64_t>(std::min(bin, num_rotations_ - 1)),
+            x, y, rotation};
   }
 
  private:
+  // 22 bits; all that is absurdly far off is one.
+  uint64_t Along(const float coordinate) const {
+    constexpr float kOffset = 1 << 20;
+    return static_cast<uint64_t>(std::clamp(
+        std::floor(coordinate / distance_) + kOffset, 0.f, 2.f * kOffset));
+  }
+
   const float distance_;
   const int num_rotations_;
 };
@@ -142,7 +143,7 @@ std::vector<Vote> CollectVotes(const HypothesisOptions& options,
       const Eigen::Vector2f r = 0.5f * (first.p_reference + second.p_reference);
       const float x = r.x() - (c * q.x() - s * q.y());
       const float y = r.y() - (s * q.x() + c * q.y());
-      votes.push_back({space.BinOf(x, y, rotation), x, y, rotation});
+      votes.push_back(space.MakeVote(x, y, rotation));
     }
   }
   return votes;
@@ -167,7 +168,6 @@ std::vector<Cluster> ClusterVotes(std::vector<Vote> votes) {
     for (; end < votes.size() && votes[end].bin == votes[begin].bin; ++end) {
       x += votes[end].x;
       y += votes[end].y;
-      // Relative to the first: a bin never spans the cut at pi.
       rotation += votes[end].rotation;
     }
     const float n = static_cast<float>(end - begin);

@@ -4,9 +4,9 @@
 // Few poses of a query submap in a reference submap that may be right, from
 // putative correspondences, without chance: every pair of correspondences that
 // agrees in length and in orientation votes for the pose that it fixes, and the
-// poses with the most votes in a neighbourhood come out. Unlike RANSAC with one
-// answer, a place that looks alike twice yields both poses; verification, which
-// sees walls and free space, decides.
+// fullest cells of a raster of poses come out, as the means of their votes.
+// Unlike RANSAC with one answer, a place that looks alike twice yields both
+// poses; verification, which sees walls and free space, decides.
 
 #ifndef CARTOGRAPHER_SDF_MATCHING_HYPOTHESES_H_
 #define CARTOGRAPHER_SDF_MATCHING_HYPOTHESES_H_
@@ -32,9 +32,10 @@ struct HypothesisOptions {
   double max_orientation_difference = 0.44;
   // Keypoints nearer than this to each other fix no rotation [m].
   double min_baseline_meters = 1.5;
-  // Poses within this distance, at the middle of the query's keypoints, and ...
+  // Votes are gathered in a raster of this pitch, for the place of the middle
+  // of the query's keypoints [m], and ...
   double cluster_distance_meters = 0.5;
-  // ... this rotation are one hypothesis [rad].
+  // ... of about this pitch for the rotation [rad].
   double cluster_rotation = 0.10;
 };
 [[nodiscard]] std::string Validate(const HypothesisOptions& options);
