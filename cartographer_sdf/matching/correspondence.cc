@@ -40,17 +40,23 @@ using Neighbour = std::pair<float, int>;
 // keypoint.
 bool IsAmbiguous(const CorrespondenceOptions& options,
                  const FeatureSet& reference,
-                 const std::vector<Neighbour>& nearest) {
-  if (nearest.empty()) return true;
-  const Eigen::Vector2d& best =
-      reference.features[nearest[0].second].keypoint.position;
-  for (const Neighbour& rival : nearest) {
-    if (reference.features[rival.second].keypoint.position == best) continue;
-    return std::sqrt(nearest[0].first) >
-           options.max_ratio * std::sqrt(rival.first);
+                 const std::vector<Neighbour>& neighbours) {
+  const auto position =
+      [&reference](const Neighbour& neighbour) -> const Eigen::Vector2d& {
+    return reference.features[neighbour.second].keypoint.position;
+  };
+  const auto best = std::min_element(neighbours.begin(), neighbours.end());
+  const Neighbour* rival = nullptr;
+  for (const Neighbour& other : neighbours) {
+    if (position(other) != position(*best) &&
+        (rival == nullptr || other < *rival)) {
+      rival = &other;
+    }
   }
-  // Nothing to be confused with, but nothing to be distinctive from either.
-  return true;
+  // Without a rival there is nothing to be confused with, but nothing to be
+  // distinctive from either.
+  return rival == nullptr ||
+         std::sqrt(best->first) > options.max_ratio * std::sqrt(rival->first);
 }
 
 }  // namespace
@@ -77,8 +83,6 @@ std::vector<Correspondence> FindCorrespondences(
   CHECK_EQ(reference.descriptors.rows(), query.descriptors.rows());
   const auto reference_indices = IndicesByKind(reference);
   const auto query_indices = IndicesByKind(query);
-  // One more than asked for, as the ratio test needs a second.
-  const size_t num_nearest = static_cast<size_t>(options.num_neighbours) + 1;
   for (int kind = 0; kind < kNumKeypointKinds; ++kind) {
     const std::vector<int>& rows = reference_indices[kind];
     if (rows.empty() || query_indices[kind].empty()) continue;
@@ -104,16 +108,14 @@ std::vector<Correspondence> FindCorrespondences(
                      squared_norms[r] - 2.f * products(r, k) + squared_norm),
             rows[r]);
       }
-      const size_t kept = std::min(num_nearest, neighbours.size());
-      std::partial_sort(neighbours.begin(), neighbours.begin() + kept,
-                        neighbours.end());
       if (options.use_ratio_test &&
-          IsAmbiguous(options, reference,
-                      {neighbours.begin(), neighbours.begin() + kept})) {
+          IsAmbiguous(options, reference, neighbours)) {
         continue;
       }
-      const size_t proposed =
-          std::min(kept, static_cast<size_t>(options.num_neighbours));
+      const size_t proposed = std::min(
+          neighbours.size(), static_cast<size_t>(options.num_neighbours));
+      std::partial_sort(neighbours.begin(), neighbours.begin() + proposed,
+                        neighbours.end());
       for (size_t n = 0; n < proposed; ++n) {
         correspondences.push_back({neighbours[n].second, query_index,
                                    std::sqrt(neighbours[n].first)});

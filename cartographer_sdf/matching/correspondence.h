@@ -32,8 +32,8 @@ struct Correspondence {
   float descriptor_distance;
 };
 
-// Putative correspondences between features of the same kind, exhaustively, in
-// the order of the query features, nearest first.
+// Putative correspondences between features of the same kind, exhaustively:
+// kind by kind, in the order of the query features, nearest first.
 [[nodiscard]] std::vector<Correspondence> FindCorrespondences(
     const CorrespondenceOptions& options, const FeatureSet& reference,
     const FeatureSet& query);
