@@ -30,14 +30,15 @@ CORE = {
                     "matching", "verification", "closure"],
 }
 OFFLINE = {
+    "file": [],
     "pose_graph": ["geometry", "grid", "field", "verification", "closure"],
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
     "loop_closing": [*CORE, "pose_graph", "pbstream"],
     "config": [*CORE, "pose_graph", "loop_closing", "report/report_options.h"],
     "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream",
                    "proto"],
-    "evaluation": [*CORE, "pose_graph", "pbstream"],
-    "report": [*CORE, "pose_graph", "pbstream", "evaluation"],
+    "evaluation": [*CORE, "file", "pose_graph", "pbstream"],
+    "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {
     "live": ["geometry", "grid", "closure", "recognition", "config"],

@@ -6,6 +6,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -76,7 +77,7 @@ absl::Status WriteMatches(const std::string& path,
         match.T_reference_query.rotation(), match.verdict, match.inliers,
         match.overlap, match.hit_ratio, match.contradiction_ratio);
   }
-  return WriteTextFile(path, content);
+  return WriteWholeFile(path, content);
 }
 
 }  // namespace cartographer_sdf

@@ -3,12 +3,9 @@
 
 #include "cartographer_sdf/evaluation/text_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -158,22 +155,6 @@ absl::StatusOr<std::vector<CsvRow>> ReadCsv(
     rows.push_back(std::move(row));
   }
   return rows;
-}
-
-absl::Status WriteTextFile(const std::string& path,
-                           const std::string& content) {
-  const std::string temporary_path = absl::StrCat(path, ".tmp-", getpid());
-  errno = 0;
-  std::ofstream file(temporary_path, std::ios::binary);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  if (!file || std::rename(temporary_path.c_str(), path.c_str()) != 0) {
-    const absl::Status status = absl::ErrnoToStatus(
-        errno == 0 ? EIO : errno, absl::StrCat("cannot write ", path));
-    std::remove(temporary_path.c_str());
-    return status;
-  }
-  return absl::OkStatus();
 }
 
 }  // namespace cartographer_sdf

@@ -61,10 +61,6 @@ struct CsvRow {
 [[nodiscard]] absl::StatusOr<std::vector<CsvRow>> ReadCsv(
     const std::string& path, const std::vector<CsvColumn>& columns);
 
-// Writes a temporary file beside `path` and renames it when it is whole.
-[[nodiscard]] absl::Status WriteTextFile(const std::string& path,
-                                         const std::string& content);
-
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_EVALUATION_TEXT_FILE_H_

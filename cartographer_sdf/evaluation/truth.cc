@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -71,7 +72,7 @@ absl::Status WriteTruth(const std::string& path, const Truth& truth) {
   std::string content = "kind,trajectory,index,x,y,yaw\n";
   AppendRows(kSubmap, truth.T_world_submap, &content);
   AppendRows(kNode, truth.T_world_tracking, &content);
-  return WriteTextFile(path, content);
+  return WriteWholeFile(path, content);
 }
 
 }  // namespace cartographer_sdf

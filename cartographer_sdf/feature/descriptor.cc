@@ -55,19 +55,31 @@ class GradientCache {
   std::vector<PolarGradient> gradients_;
 };
 
-// Adds `weight` to the two bins nearest to the angle, in (-2 pi, 4 pi), by
-// their closeness. Bin k is centred on k * 2 pi / n.
-void AddToHistogram(const double angle, const double weight,
-                    std::vector<double>* const histogram) {
-  const int n = static_cast<int>(histogram->size());
-  const double bin = angle * n / (2. * M_PI) + n;  // positive
-  const int floor = static_cast<int>(bin);
-  const double fraction = bin - floor;
-  int low = floor;
-  while (low >= n) low -= n;
-  (*histogram)[low] += (1. - fraction) * weight;
-  (*histogram)[low + 1 < n ? low + 1 : 0] += fraction * weight;
-}
+// Bin k of n is centred on k * 2 pi / n.
+class CircularHistogram {
+ public:
+  explicit CircularHistogram(const int num_bins)
+      : num_bins_(num_bins),
+        bins_per_radian_(num_bins / (2. * M_PI)),
+        bins_(num_bins, 0.) {}
+
+  // Adds to the two bins nearest to the angle, in (-2 pi, 4 pi), by their
+  // closeness.
+  void Add(const double angle, const double weight) {
+    const double bin = angle * bins_per_radian_ + num_bins_;  // positive
+    int low = static_cast<int>(bin);
+    const double fraction = bin - low;
+    while (low >= num_bins_) low -= num_bins_;
+    bins_[low] += (1. - fraction) * weight;
+    bins_[low + 1 < num_bins_ ? low + 1 : 0] += fraction * weight;
+  }
+  const std::vector<double>& bins() const { return bins_; }
+
+ private:
+  const int num_bins_;
+  const double bins_per_radian_;
+  std::vector<double> bins_;
+};
 
 // The inner cells of one axis that lie within the radius of a centre, with
 // their squared distances and Gaussian weights.
@@ -126,10 +138,12 @@ Window ExtractWindow(const DescriptorOptions& options,
 std::vector<double> DominantOrientations(const DescriptorOptions& options,
                                          const Window& window) {
   const int n = options.num_orientation_bins;
-  std::vector<double> raw(n, 0.), histogram(n);
+  CircularHistogram sharp(n);
   for (const PolarGradient& gradient : window.gradients) {
-    AddToHistogram(gradient.orientation, gradient.magnitude, &raw);
+    sharp.Add(gradient.orientation, gradient.magnitude);
   }
+  const std::vector<double>& raw = sharp.bins();
+  std::vector<double> histogram(n);
   for (int k = 0; k < n; ++k) {
     histogram[k] =
         0.25 * raw[(k + n - 1) % n] + 0.5 * raw[k] + 0.25 * raw[(k + 1) % n];
@@ -157,14 +171,14 @@ std::vector<double> DominantOrientations(const DescriptorOptions& options,
 
 Eigen::VectorXf Describe(const DescriptorOptions& options, const Window& window,
                          const double orientation) {
-  std::vector<double> histogram(options.num_bins, 0.);
+  CircularHistogram histogram(options.num_bins);
   for (const PolarGradient& gradient : window.gradients) {
-    AddToHistogram(gradient.orientation - orientation, gradient.magnitude,
-                   &histogram);
+    histogram.Add(gradient.orientation - orientation, gradient.magnitude);
   }
   Eigen::VectorXd descriptor(options.num_bins + 1);
   descriptor.head(options.num_bins) =
-      Eigen::Map<const Eigen::VectorXd>(histogram.data(), options.num_bins)
+      Eigen::Map<const Eigen::VectorXd>(histogram.bins().data(),
+                                        options.num_bins)
           .normalized();
   descriptor[options.num_bins] =
       options.distance_weight * kMillimetresPerMetre * window.mean_distance;

@@ -29,17 +29,17 @@ std::vector<float> GaussianKernel(const double sigma) {
   return normalized;
 }
 
-// Convolves along the rows' index (the fast one).
-ArrayXXf ConvolveColumns(const ArrayXXf& values,
+// Scales, and convolves along the rows' index (the fast one).
+ArrayXXf ConvolveColumns(const float scale, const ArrayXXf& values,
                          const std::vector<float>& kernel) {
   const Index radius = static_cast<Index>(kernel.size()) / 2;
   const Index rows = values.rows();
   ArrayXXf result(rows, values.cols());
   Eigen::ArrayXf padded(rows + 2 * radius);
   for (Index j = 0; j < values.cols(); ++j) {
-    padded.head(radius) = values(0, j);
-    padded.segment(radius, rows) = values.col(j);
-    padded.tail(radius) = values(rows - 1, j);
+    padded.head(radius) = scale * values(0, j);
+    padded.segment(radius, rows) = scale * values.col(j);
+    padded.tail(radius) = scale * values(rows - 1, j);
     result.col(j) = kernel[radius] * padded.segment(radius, rows);
     for (Index k = 0; k < radius; ++k) {
       result.col(j) += kernel[k] * (padded.segment(k, rows) +
@@ -83,11 +83,11 @@ Hessian SobelHessian(const ArrayXXf& f, const Index i, const Index j) {
                    f(i - 1, j - 1))};
 }
 
-// det(H) at every inner cell; 0 on the rim.
-ArrayXXf DeterminantOfHessian(const ArrayXXf& f) {
+// |det(H)| at every inner cell; 0 on the rim.
+ArrayXXf HessianMagnitude(const ArrayXXf& f) {
   const Index rows = f.rows(), cols = f.cols();
-  ArrayXXf determinant = ArrayXXf::Zero(rows, cols);
-  if (rows < 3 || cols < 3) return determinant;
+  ArrayXXf magnitude = ArrayXXf::Zero(rows, cols);
+  if (rows < 3 || cols < 3) return magnitude;
   const Index n = rows - 2;
   Eigen::ArrayXf xx(n), yy(n), xy(n);
   // SobelHessian for whole columns: sums across columns first.
@@ -99,9 +99,9 @@ ArrayXXf DeterminantOfHessian(const ArrayXXf& f) {
     xx = 0.25f * (smooth.head(n) - 2.f * smooth.segment(1, n) + smooth.tail(n));
     yy = 0.25f * (second.head(n) + 2.f * second.segment(1, n) + second.tail(n));
     xy = 0.25f * (first.tail(n) - first.head(n));
-    determinant.col(j).segment(1, n) = xx * yy - xy * xy;
+    magnitude.col(j).segment(1, n) = (xx * yy - xy * xy).abs();
   }
-  return determinant;
+  return magnitude;
 }
 
 // Whether a free cell meets an unobserved one within the radius.
@@ -174,7 +174,7 @@ std::string Validate(const KeypointOptions& options) {
 ArrayXXf SmoothField(const DistanceField& field, const double sigma_cells) {
   const std::vector<float> kernel = GaussianKernel(sigma_cells);
   const float scale = static_cast<float>(1. / field.geometry.resolution);
-  return ConvolveRows(ConvolveColumns(scale * field.distance, kernel), kernel);
+  return ConvolveRows(ConvolveColumns(scale, field.distance, kernel), kernel);
 }
 
 std::vector<Keypoint> DetectKeypoints(const KeypointOptions& options,
@@ -183,8 +183,7 @@ std::vector<Keypoint> DetectKeypoints(const KeypointOptions& options,
   CHECK_EQ(Validate(options), "");
   CHECK_EQ(smoothed.rows(), field.distance.rows());
   CHECK_EQ(smoothed.cols(), field.distance.cols());
-  const ArrayXXf determinant = DeterminantOfHessian(smoothed);
-  const ArrayXXf magnitude = determinant.abs();
+  const ArrayXXf magnitude = HessianMagnitude(smoothed);
   const float threshold = static_cast<float>(options.detection_threshold);
   const Index margin = options.non_maximum_suppression_cells;
   std::vector<Keypoint> keypoints;
@@ -204,10 +203,11 @@ std::vector<Keypoint> DetectKeypoints(const KeypointOptions& options,
                                               magnitude(i, j + 1)));
       const Eigen::Vector2d p_grid = field.geometry.CellsToGrid(cells);
       const Hessian hessian = SobelHessian(smoothed, i, j);
-      const KeypointKind kind = determinant(i, j) < 0.f ? KeypointKind::kSaddle
-                                : hessian.xx + hessian.yy < 0.f
-                                    ? KeypointKind::kMaximum
-                                    : KeypointKind::kMinimum;
+      const KeypointKind kind =
+          hessian.xx * hessian.yy < hessian.xy * hessian.xy
+              ? KeypointKind::kSaddle
+          : hessian.xx + hessian.yy < 0.f ? KeypointKind::kMaximum
+                                          : KeypointKind::kMinimum;
       keypoints.push_back({field.geometry.T_submap_grid * p_grid,
                            SampleField(field, p_grid)->distance, kind,
                            magnitude(i, j)});

@@ -10,8 +10,8 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/report/markup.h"
-#include "cartographer_sdf/report/whole_file.h"
 
 namespace cartographer_sdf {
 namespace {

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "cartographer_sdf/report/whole_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {

@@ -17,6 +17,7 @@
 #include "cartographer_sdf/evaluation/text_file.h"
 #include "cartographer_sdf/evaluation/trajectory_error.h"
 #include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/progress.h"
@@ -195,7 +196,7 @@ absl::Status WriteMeasurements(const std::vector<Measurement>& measurements) {
                             *number);
     }
   }
-  return WriteTextFile(FLAGS_csv, content);
+  return WriteWholeFile(FLAGS_csv, content);
 }
 
 absl::Status CheckFlags() {

@@ -16,6 +16,7 @@
 
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/verification/agreement.h"
+#include "cartographer_sdf/verification/ranking.h"
 #include "cartographer_sdf/verification/registration.h"
 #include "cartographer_sdf/verification/surface_model.h"
 
@@ -31,28 +32,6 @@ enum class Verdict {
 };
 // "accepted", "too_little_overlap", ...
 [[nodiscard]] const char* VerdictName(Verdict verdict);
-
-// Coarse to fine: all hypotheses on few points, the survivors on more.
-struct RankingOptions {
-  int num_coarse_points = 40;
-  int num_fine_points = 150;
-  // Hypotheses that reach the fine ranking, and those that are refined.
-  int num_coarse_survivors = 15;
-  int num_refined = 5;
-  // The tolerance of both: hypotheses are this wrong [m].
-  double hit_distance_meters = 0.3;
-  double contradiction_distance_meters = 0.5;
-  // Contradictions count so many times as much as hits.
-  double contradiction_weight = 2.;
-  // A hypothesis with a lower (hits - weight * contradictions) / points is
-  // dropped. Larger: faster, less recall.
-  double min_coarse_score = 0.3;
-  double min_fine_score = 0.55;
-  // Hypotheses that score worse than the best one by more than this are not
-  // refined: they can be neither right nor rivals.
-  double max_fine_score_gap = 0.15;
-};
-[[nodiscard]] std::string Validate(const RankingOptions& options);
 
 // The score, log-odds of being right, is linear in these terms. The weights are
 // learned by logistic regression (scripts/learn_score.py) on pairs of submaps

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
@@ -89,12 +90,12 @@ TEST(MatchTableTest, AnEmptyTableIsItsHeader) {
 TEST(MatchTableTest, RefusesWhatMakesNoSense) {
   const testing::TemporaryDirectory directory;
   const std::string path = directory.File("matches.csv");
-  ASSERT_TRUE(
-      WriteTextFile(path, std::string(kHeader) + "0,3,1,14,2,1,1,1,3,a,1,1,1,1")
-          .ok());
+  ASSERT_TRUE(WriteWholeFile(
+                  path, std::string(kHeader) + "0,3,1,14,2,1,1,1,3,a,1,1,1,1")
+                  .ok());
   EXPECT_THAT(std::string(ReadMatches(path).status().message()),
               HasSubstr(":2: \"accepted\" is neither 0 nor 1"));
-  ASSERT_TRUE(WriteTextFile(path, "reference_trajectory\n0\n").ok());
+  ASSERT_TRUE(WriteWholeFile(path, "reference_trajectory\n0\n").ok());
   EXPECT_THAT(std::string(ReadMatches(path).status().message()),
               HasSubstr("0 columns named \"reference_index\""));
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -127,10 +128,10 @@ TEST(EvaluateRelationsTest, NoneOfAnEmptyMap) {
 TEST(ReadRelationsTest, ReadsNumbersAndSkipsComments) {
   const testing::TemporaryDirectory directory;
   const std::string path = directory.File("a.relations");
-  ASSERT_TRUE(WriteTextFile(path,
-                            "# i j x y theta t1 t2 dt1 dt2\n"
-                            "240 279  -0.05\t-0.12 -1.5 100.5 131 -0.1 0.08\n"
-                            "\n1 2 3 4 5 6 7 # said by hand\n")
+  ASSERT_TRUE(WriteWholeFile(path,
+                             "# i j x y theta t1 t2 dt1 dt2\n"
+                             "240 279  -0.05\t-0.12 -1.5 100.5 131 -0.1 0.08\n"
+                             "\n1 2 3 4 5 6 7 # said by hand\n")
                   .ok());
   const absl::StatusOr<std::vector<Relation>> relations = ReadRelations(path);
   ASSERT_TRUE(relations.ok()) << relations.status();
@@ -148,10 +149,10 @@ TEST(ReadRelationsTest, ReadsNumbersAndSkipsComments) {
 TEST(ReadRelationsTest, ErrorsNameTheLine) {
   const testing::TemporaryDirectory directory;
   const std::string path = directory.File("a.relations");
-  ASSERT_TRUE(WriteTextFile(path, "# comment\n1 2 3 4 5 6\n").ok());
+  ASSERT_TRUE(WriteWholeFile(path, "# comment\n1 2 3 4 5 6\n").ok());
   EXPECT_THAT(std::string(ReadRelations(path).status().message()),
               HasSubstr("a.relations:2: 6 numbers instead of 7 or more"));
-  ASSERT_TRUE(WriteTextFile(path, "1 2 3 four 5 6 7\n").ok());
+  ASSERT_TRUE(WriteWholeFile(path, "1 2 3 four 5 6 7\n").ok());
   EXPECT_THAT(std::string(ReadRelations(path).status().message()),
               HasSubstr(":1: \"four\" is not a finite number"));
 }

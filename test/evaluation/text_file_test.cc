@@ -8,6 +8,7 @@
 #include <iterator>
 #include <random>
 
+#include "cartographer_sdf/file/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
@@ -27,16 +28,11 @@ const std::vector<CsvColumn>& Columns() {
   return *columns;
 }
 
-std::string Content(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
-
 class TextFileTest : public ::testing::Test {
  protected:
   std::string Write(const std::string& content) {
     const std::string path = directory_.File("table.csv");
-    EXPECT_TRUE(WriteTextFile(path, content).ok());
+    EXPECT_TRUE(WriteWholeFile(path, content).ok());
     return path;
   }
   absl::StatusOr<std::vector<CsvRow>> Read(const std::string& content) {
@@ -113,27 +109,6 @@ TEST_F(TextFileTest, AnyBytesGiveATableOrAnError) {
     const auto rows = Read(content);
     EXPECT_TRUE(rows.ok() || !rows.status().message().empty());
   }
-}
-
-TEST_F(TextFileTest, WritingReplacesAndLeavesNothingElse) {
-  Write("first");
-  EXPECT_EQ(Content(Write("second\n")), "second\n");
-  EXPECT_EQ(
-      std::distance(std::filesystem::directory_iterator(directory_.path()), {}),
-      1);
-}
-
-TEST_F(TextFileTest, AFailingWriteLeavesTheOldFileAndNothingElse) {
-  const std::string path = directory_.File("taken");
-  std::filesystem::create_directory(path);
-  const absl::Status status = WriteTextFile(path, "content");
-  EXPECT_THAT(std::string(status.message()), HasSubstr("taken"));
-  EXPECT_TRUE(std::filesystem::is_directory(path));
-  EXPECT_EQ(
-      std::distance(std::filesystem::directory_iterator(directory_.path()), {}),
-      1);
-  EXPECT_FALSE(
-      WriteTextFile(directory_.File("missing/table.csv"), "content").ok());
 }
 
 }  // namespace

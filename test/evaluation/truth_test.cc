@@ -4,6 +4,7 @@
 #include "cartographer_sdf/evaluation/truth.h"
 
 #include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/shared_data.h"
@@ -51,7 +52,7 @@ TEST(TruthTest, RefusesWhatMakesNoSense) {
            {"submap,0,0,1e10,2,3\n", ":2: the position is beyond"},
            {"submap,0,0,1,2,inf\n", ":2: \"inf\" is not a finite number"}}) {
     ASSERT_TRUE(
-        WriteTextFile(path, "kind,trajectory,index,x,y,yaw\n" + rows).ok());
+        WriteWholeFile(path, "kind,trajectory,index,x,y,yaw\n" + rows).ok());
     EXPECT_THAT(std::string(ReadTruth(path).status().message()),
                 HasSubstr(problem));
   }

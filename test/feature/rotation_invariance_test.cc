@@ -21,10 +21,20 @@ using testing::DescribeGrid;
 using testing::Repeatability;
 
 constexpr double kToleranceCells = 2.;
-// Measured: LOWEST of any angle.
-constexpr double kLeastFraction = 0.8;
-// A histogram of unit length and, in units of 0.5 m, the distance to walls.
-constexpr double kLargestMedianDistance = 0.3;
+// Resampled walls move by half a cell, as does what is found between them.
+// Peaks and pits are fixed by that, saddles on long ridges slide.
+struct LeastFractions {
+  double all;
+  double extrema;
+};
+// The lowest measured of any angle are 0.81 and 0.91.
+constexpr LeastFractions kTurnedGrid = {0.8, 0.9};
+// The lowest measured of any angle are 0.77 and 0.84.
+constexpr LeastFractions kTurnedBuilding = {0.75, 0.82};
+// A histogram of unit length beside twice the distance to walls in metres.
+// Measured medians are at most 0.12, and 0.85 between different places.
+constexpr double kLargestMedianDistance = 0.15;
+constexpr double kLeastMedianOfOthers = 0.7;
 
 // A grid of nine furnished rooms with walls all around.
 constexpr int kCells = 280;
@@ -36,14 +46,20 @@ OccupancyGrid Building(const double angle) {
                             Rigid2(middle, middle, -angle));
 }
 
-void ExpectRepeatable(const Repeatability& result, const int degrees) {
-  EXPECT_GE(result.Fraction(), kLeastFraction) << degrees;
-  const double same = Repeatability::Median(result.same);
-  EXPECT_LE(same, kLargestMedianDistance) << degrees;
-  EXPECT_LE(same, 0.5 * Repeatability::Median(result.other)) << degrees;
-  ::testing::Test::RecordProperty("x", 0);
-  printf("%d: %d %.3f %.3f %.3f\n", degrees, result.num_keypoints,
-         result.Fraction(), same, Repeatability::Median(result.other));
+void ExpectRepeatable(const DescribedGrid& original, const OccupancyGrid& grid,
+                      const double angle, const LeastFractions& least) {
+  const std::optional<DescribedGrid> turned = DescribeGrid(grid);
+  ASSERT_TRUE(turned.has_value());
+  Repeatability result;
+  AddRepeatability(original, *turned, angle, 0., kToleranceCells, &result);
+  EXPECT_GT(result.NumKeypoints(), 200);
+  EXPECT_GE(result.Fraction(), least.all) << angle;
+  EXPECT_GE(result.Fraction({KeypointKind::kMaximum, KeypointKind::kMinimum}),
+            least.extrema)
+      << angle;
+  EXPECT_LE(Repeatability::Median(result.same), kLargestMedianDistance)
+      << angle;
+  EXPECT_GE(Repeatability::Median(result.other), kLeastMedianOfOthers) << angle;
 }
 
 TEST(RotationInvarianceTest, ATurnedGridHasTheSameFeatures) {
@@ -52,30 +68,22 @@ TEST(RotationInvarianceTest, ATurnedGridHasTheSameFeatures) {
   ASSERT_TRUE(original.has_value());
   for (int degrees = 0; degrees < 360; degrees += 10) {
     const double angle = degrees * M_PI / 180.;
-    const std::optional<DescribedGrid> turned =
-        DescribeGrid(testing::TurnedGrid(grid, angle));
-    ASSERT_TRUE(turned.has_value());
-    Repeatability result;
-    AddRepeatability(*original, *turned, angle, 0., kToleranceCells, &result);
-    EXPECT_GT(result.num_keypoints, 200);
-    ExpectRepeatable(result, degrees);
+    ExpectRepeatable(*original, testing::TurnedGrid(grid, angle), angle,
+                     kTurnedGrid);
   }
 }
 
 TEST(RotationInvarianceTest, ATurnedBuildingHasTheSameFeatures) {
   const std::optional<DescribedGrid> original = DescribeGrid(Building(0.));
   ASSERT_TRUE(original.has_value());
-  for (int degrees = 5; degrees < 360; degrees += 25) {
+  for (int degrees = 5; degrees < 360; degrees += 10) {
     const double angle = degrees * M_PI / 180.;
-    const std::optional<DescribedGrid> turned = DescribeGrid(Building(angle));
-    ASSERT_TRUE(turned.has_value());
-    Repeatability result;
-    AddRepeatability(*original, *turned, angle, 0., kToleranceCells, &result);
-    ExpectRepeatable(result, degrees);
+    ExpectRepeatable(*original, Building(angle), angle, kTurnedBuilding);
   }
 }
 
-// Right angles permute the cells, so nothing is lost but the last bits.
+// Right angles permute the cells, so nothing is lost but the last bits; those
+// decide only where two directions dominate equally.
 TEST(RotationInvarianceTest, RightAnglesLoseNothing) {
   const OccupancyGrid grid = Building(0.3);
   const std::optional<DescribedGrid> original = DescribeGrid(grid);
@@ -87,10 +95,8 @@ TEST(RotationInvarianceTest, RightAnglesLoseNothing) {
     ASSERT_TRUE(turned.has_value());
     Repeatability result;
     AddRepeatability(*original, *turned, angle, 0., 0.01, &result);
-    printf("right %f %d\n", result.Fraction(), result.num_keypoints);
     EXPECT_GE(result.Fraction(), 0.98);
-    EXPECT_LE(Repeatability::Median(result.same), 1e-3);
-    printf("%g\n", Repeatability::Median(result.same));
+    EXPECT_LE(Repeatability::Median(result.same), 1e-4);
   }
 }
 

@@ -8,9 +8,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "cartographer_sdf/feature/descriptor.h"
@@ -97,13 +99,25 @@ inline Eigen::ArrayXXd DistanceToUnobserved(const DistanceField& field) {
 }
 
 struct Repeatability {
-  int num_keypoints = 0;
-  int num_found = 0;
+  std::array<int, kNumKeypointKinds> num_keypoints = {};
+  std::array<int, kNumKeypointKinds> num_found = {};
   // Between what corresponds, and between features of one kind that do not.
   std::vector<double> same, other;
 
+  [[nodiscard]] double Fraction(const std::set<KeypointKind>& kinds) const {
+    int keypoints = 0, found = 0;
+    for (const KeypointKind kind : kinds) {
+      keypoints += num_keypoints[static_cast<int>(kind)];
+      found += num_found[static_cast<int>(kind)];
+    }
+    return static_cast<double>(found) / keypoints;
+  }
   [[nodiscard]] double Fraction() const {
-    return static_cast<double>(num_found) / num_keypoints;
+    return Fraction({KeypointKind::kMaximum, KeypointKind::kMinimum,
+                     KeypointKind::kSaddle});
+  }
+  [[nodiscard]] int NumKeypoints() const {
+    return num_keypoints[0] + num_keypoints[1] + num_keypoints[2];
   }
   [[nodiscard]] static double Median(std::vector<double> values) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
@@ -128,7 +142,7 @@ inline void AddRepeatability(const DescribedGrid& original,
     const Keypoint& keypoint = original.features.features[k].keypoint;
     const Eigen::Array2i cell = geometry.CellAt(keypoint.position);
     if (to_unobserved(cell.x(), cell.y()) < border_cells) continue;
-    ++result->num_keypoints;
+    ++result->num_keypoints[static_cast<int>(keypoint.kind)];
     const Eigen::Vector2d expected = Rigid2(0., 0., angle) * keypoint.position;
     double best = std::numeric_limits<double>::infinity();
     for (size_t t = 0; t < turned.features.features.size(); ++t) {
@@ -145,7 +159,7 @@ inline void AddRepeatability(const DescribedGrid& original,
       }
     }
     if (std::isinf(best)) continue;
-    ++result->num_found;
+    ++result->num_found[static_cast<int>(keypoint.kind)];
     result->same.push_back(best);
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#ifndef CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_
-#define CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_
+#ifndef CARTOGRAPHER_SDF_FILE_WHOLE_FILE_H_
+#define CARTOGRAPHER_SDF_FILE_WHOLE_FILE_H_
 
 #include <string>
 
@@ -17,4 +17,4 @@ namespace cartographer_sdf {
 
 }  // namespace cartographer_sdf
 
-#endif  // CARTOGRAPHER_SDF_REPORT_WHOLE_FILE_H_
+#endif  // CARTOGRAPHER_SDF_FILE_WHOLE_FILE_H_

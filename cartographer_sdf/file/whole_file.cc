@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/report/whole_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 
 #include <unistd.h>
 

@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/verification/ranking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "cartographer_sdf/verification/agreement.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Poses nearer than this, at the middle of the overlap, are one answer.
+constexpr double kSameDistance = 0.3;
+constexpr double kSameRotation = 0.1;
+
+// Each survivor is also tried turned by these before refinement: a hypothesis
+// from keypoints is off by some degrees, beyond the reach of Gauss-Newton at
+// the far ends of a submap [rad].
+constexpr double kPolishRotations[] = {-0.035, 0.035, -0.07, 0.07};
+
+double RankingScore(const RankingOptions& options,
+                    const SurfaceModel& reference, const SurfaceModel& query,
+                    const Rigid2& T_reference_query, const int num_points) {
+  const AgreementOptions tolerance{options.hit_distance_meters,
+                                   options.contradiction_distance_meters};
+  const DirectedAgreement forward = MeasureAgreement(
+      tolerance, reference, query, T_reference_query, num_points);
+  const DirectedAgreement backward = MeasureAgreement(
+      tolerance, query, reference, T_reference_query.Inverse(), num_points);
+  // Points that the other has not seen neither speak for nor against the pose,
+  // but a pose at which little is seen by both says little: a few more points
+  // in the denominator.
+  const double num_seen = forward.num_points + backward.num_points;
+  const double regularized = num_seen + 0.1 * num_points;
+  return (forward.hits + backward.hits -
+          options.contradiction_weight *
+              (forward.contradictions + backward.contradictions)) /
+         regularized;
+}
+
+struct Ranked {
+  double score;
+  Rigid2 T_reference_query;
+};
+
+// Best first; equal ones in an order that is theirs, whatever the order in
+// which they came.
+bool IsBetter(const Ranked& a, const Ranked& b) {
+  const auto key = [](const Ranked& ranked) {
+    const Rigid2& pose = ranked.T_reference_query;
+    return std::make_tuple(-ranked.score, pose.rotation(),
+                           pose.translation().x(), pose.translation().y());
+  };
+  return key(a) < key(b);
+}
+
+// Best first; of those that are nearly the same pose, the best.
+std::vector<Ranked> KeepBest(std::vector<Ranked> ranked, const size_t count,
+                             const double min_score,
+                             const Eigen::Vector2d& middle) {
+  std::sort(ranked.begin(), ranked.end(), IsBetter);
+  std::vector<Ranked> kept;
+  for (const Ranked& candidate : ranked) {
+    if (kept.size() >= count || candidate.score < min_score) break;
+    const bool is_new =
+        std::none_of(kept.begin(), kept.end(), [&](const Ranked& better) {
+          return AreNear(candidate.T_reference_query, better.T_reference_query,
+                         middle, kSameDistance, kSameRotation);
+        });
+    if (is_new) kept.push_back(candidate);
+  }
+  return kept;
+}
+
+Rigid2 TurnAbout(const Rigid2& T_reference_query, const Eigen::Vector2d& at,
+                 const double rotation) {
+  const double turned = T_reference_query.rotation() + rotation;
+  return Rigid2(T_reference_query * at - Eigen::Rotation2Dd(turned) * at,
+                turned);
+}
+
+// Those whose score is worse than that of the first by more than the gap.
+void DropWorse(const double gap, std::vector<Ranked>* const ranked) {
+  while (!ranked->empty() &&
+         ranked->back().score < ranked->front().score - gap) {
+    ranked->pop_back();
+  }
+}
+
+}  // namespace
+
+std::string Validate(const RankingOptions& options) {
+  if (options.num_coarse_points < 1 || options.num_fine_points < 1 ||
+      options.num_coarse_survivors < 1 || options.num_refined < 1) {
+    return "num_coarse_points, num_fine_points, num_coarse_survivors and "
+           "num_refined must be positive";
+  }
+  if (!(options.hit_distance_meters > 0. &&
+        options.contradiction_distance_meters >= options.hit_distance_meters)) {
+    return "hit_distance_meters must be positive and not above "
+           "contradiction_distance_meters";
+  }
+  if (!(options.contradiction_weight >= 0. &&
+        options.max_fine_score_gap >= 0.)) {
+    return "contradiction_weight and max_fine_score_gap must not be negative";
+  }
+  return "";
+}
+
+bool AreNear(const Rigid2& a, const Rigid2& b, const Eigen::Vector2d& at,
+             const double distance, const double rotation) {
+  return (a * at - b * at).norm() < distance &&
+         std::abs(NormalizeAngle(a.rotation() - b.rotation())) < rotation;
+}
+
+std::vector<Rigid2> RankHypotheses(const RankingOptions& options,
+                                   const SurfaceModel& reference,
+                                   const SurfaceModel& query,
+                                   const std::vector<Rigid2>& hypotheses,
+                                   const Eigen::Vector2d& middle) {
+  std::vector<Ranked> coarse;
+  for (const Rigid2& T_reference_query : hypotheses) {
+    coarse.push_back({RankingScore(options, reference, query, T_reference_query,
+                                   options.num_coarse_points),
+                      T_reference_query});
+  }
+  coarse = KeepBest(std::move(coarse), options.num_coarse_survivors,
+                    options.min_coarse_score, middle);
+  std::vector<Ranked> fine;
+  const auto rank_fine = [&](const Rigid2& T_reference_query) {
+    fine.push_back({RankingScore(options, reference, query, T_reference_query,
+                                 options.num_fine_points),
+                    T_reference_query});
+  };
+  for (const Ranked& survivor : coarse) rank_fine(survivor.T_reference_query);
+  fine = KeepBest(std::move(fine), options.num_refined,
+                  options.min_coarse_score, middle);
+  // Polishing gains less than this.
+  DropWorse(2. * options.max_fine_score_gap, &fine);
+  const std::vector<Ranked> unpolished = fine;
+  for (const Ranked& survivor : unpolished) {
+    for (const double rotation : kPolishRotations) {
+      rank_fine(TurnAbout(survivor.T_reference_query, middle, rotation));
+    }
+  }
+  fine = KeepBest(std::move(fine), options.num_refined, options.min_fine_score,
+                  middle);
+  DropWorse(options.max_fine_score_gap, &fine);
+  std::vector<Rigid2> poses;
+  for (const Ranked& ranked : fine) poses.push_back(ranked.T_reference_query);
+  return poses;
+}
+
+}  // namespace cartographer_sdf
