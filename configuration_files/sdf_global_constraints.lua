@@ -120,7 +120,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Wall points of each submap for it.
         num_agreement_points = 1000,
         -- Score = log-odds of being right. Learned on Intel, ACES, Killian
-        -- Court and Willow Garage; see docs/results.
+        -- Court and Willow Garage; see docs/design.md.
         score_weights = {
           mean_hit_ratio = 7.8,
           mean_contradiction_ratio = -91.,
@@ -175,7 +175,7 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- A closure that no other supports needs this score.
       min_unsupported_score = 5.,
       -- Sum of the scores that counts as support.
-      min_support = 3.,
+      min_support = 8.,
     },
     -- How a closure becomes constraints between submaps and nodes.
     lifting = {

@@ -10,6 +10,8 @@
 
 set -euo pipefail
 
+[[ -x /usr/bin/time ]] || { echo "install the Debian package time" >&2; exit 1; }
+
 SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
 DATA_DIR="${1:-${SOURCE_DIR}/../shared/data}"
@@ -28,12 +30,8 @@ show() {
   echo
   echo '```'
   echo "\$ cartographer_sdf $*" | sed -e "s#${DATA_DIR}/##g" -e "s#${WORK_DIR}/##g"
-  "${PROGRAM}" "$@" | sed -e "s#${WORK_DIR}/##g"
-  if [[ "$1" == close_loops ]]; then
-    # Again on one core, for the whole process.
-    /usr/bin/time -f 'whole process, one thread: %e s, %U s of CPU, %M kB at most' \
-      "${PROGRAM}" "$@" --threads 1 2>&1 >/dev/null | tail -n 1
-  fi
+  /usr/bin/time -f 'whole process: %e s, %U s of CPU, %M kB at most' \
+    "${PROGRAM}" "$@" 2>&1 | sed -e "s#${WORK_DIR}/##g"
   echo '```'
 }
 
@@ -51,7 +49,7 @@ show() {
     echo
     echo "## ${name}"
     show evaluate --input "${map}" --truth "${DATA_DIR}/${name}.truth.csv" "${relations[@]}"
-    show close_loops --input "${map}" --output "${WORK_DIR}/closed.pbstream" \
+    show close_loops --threads 1 --input "${map}" --output "${WORK_DIR}/closed.pbstream" \
       --closures "${WORK_DIR}/closures.csv"
     show evaluate --input "${WORK_DIR}/closed.pbstream" \
       --truth "${DATA_DIR}/${name}.truth.csv" "${relations[@]}"

@@ -41,7 +41,7 @@ struct ConsistencyOptions {
   // A closure without support needs this score; log-odds.
   double min_unsupported_score = 5.;
   // Score of all consistent closures together that counts as support.
-  double min_support = 3.;
+  double min_support = 8.;
 };
 [[nodiscard]] std::string Validate(const ConsistencyOptions& options);
 

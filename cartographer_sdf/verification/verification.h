@@ -34,8 +34,8 @@ enum class Verdict {
 [[nodiscard]] const char* VerdictName(Verdict verdict);
 
 // The score, log-odds of being right, is linear in these terms. The weights are
-// learned by logistic regression (scripts/learn_score.py) on pairs of submaps
-// of several buildings; see docs/results.
+// learned by logistic regression on pairs of submaps of several buildings; see
+// docs/design.md.
 struct ScoreWeights {
   double mean_hit_ratio = 7.8;  // of the two directions
   double mean_contradiction_ratio = -91.;
@@ -75,8 +75,8 @@ struct Agreement {
   double overlap_area = 0.;  // [m^2]
   double overlap = 0.;       // of the smaller observed area
   double min_scatter_eigenvalue = 0.;
-  // Mean hit ratio less both contradiction ratios: how good a pose is beside
-  // others of the same pair. At most 1.
+  // Mean hit ratio less both contradiction ratios, and a little for a large
+  // overlap: how good a pose is beside others of the same pair.
   [[nodiscard]] double Quality() const;
 };
 

@@ -178,14 +178,27 @@ TEST(SelectConsistentTest, OneAloneNeedsAHighScore) {
             Selection::kSelected);
 }
 
-TEST(SelectConsistentTest, TwoThatAgreeSupportEachOther) {
+TEST(SelectConsistentTest, ThreeThatAgreeSupportEachOther) {
+  const std::vector<SelectionResult> results =
+      Select({Closure(0, 10, Rigid2(), 4.), Closure(1, 11, Rigid2(), 4.5),
+              Closure(2, 12, Rigid2(), 4.)});
+  for (const SelectionResult& result : results) {
+    EXPECT_EQ(result.selection, Selection::kSelected);
+    EXPECT_EQ(result.contradiction, 0.);
+  }
+  EXPECT_EQ(results[0].support, 8.5);
+  EXPECT_EQ(results[1].support, 8.);
+  EXPECT_EQ(results[2].support, 8.5);
+}
+
+// Look-alikes come in pairs too, of neighbouring submaps that share scans.
+TEST(SelectConsistentTest, TwoThatAgreeAreTooFew) {
   const std::vector<SelectionResult> results =
       Select({Closure(0, 10, Rigid2(), 3.5), Closure(1, 11, Rigid2(), 4.)});
-  EXPECT_EQ(results[0].selection, Selection::kSelected);
-  EXPECT_EQ(results[1].selection, Selection::kSelected);
+  EXPECT_EQ(results[0].selection, Selection::kUnsupported);
+  EXPECT_EQ(results[1].selection, Selection::kUnsupported);
   EXPECT_EQ(results[0].support, 4.);
   EXPECT_EQ(results[1].support, 3.5);
-  EXPECT_EQ(results[0].contradiction, 0.);
 }
 
 TEST(SelectConsistentTest, OneThatManyContradictIsOut) {
