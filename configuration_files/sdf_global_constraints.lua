@@ -159,6 +159,31 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Submaps of one trajectory are matched from this difference of their
     -- indices on; nearer ones share scans.
     min_index_gap = 3,
+    -- Whether closures of submaps that local SLAM tore, so that walls stand in
+    -- them twice, say nothing of others and need the support of others. Reads
+    -- all scans of the map.
+    silence_torn_submaps = true,
+    -- What counts as torn. Agreement is the ratio of hits less twice that of
+    -- contradictions.
+    tear = {
+      -- Parts of equally many scans that are compared with each other. Larger:
+      -- finds slips near a submap's ends, but fewer walls are seen twice.
+      num_parts = 6,
+      -- [m] Cells of the grids that the parts are drawn into.
+      resolution_meters = 0.1,
+      -- [m] Points farther from the robot are left out.
+      max_range_meters = 30.,
+      -- Wall cells that two parts must have in common.
+      min_num_points = 50,
+      -- How much better two parts must agree once one is moved. Lower: finds
+      -- smaller tears, and takes moved doors and people for some.
+      min_gain = 0.6,
+      -- How well they must agree then.
+      min_agreement = 0.7,
+      -- [m], [rad] The move must be one of these at least.
+      min_translation_meters = 0.2,
+      min_rotation = 0.035,
+    },
     -- Which closures believe each other, by cycles with the odometry between.
     consistency = {
       -- [rad / sqrt(m)] Drift of local SLAM. Larger: fewer contradictions.

@@ -145,6 +145,18 @@ void VisitOptions(Visitor& visit, MatchOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, TearOptions& options) {
+  visit("num_parts", options.num_parts);
+  visit("resolution_meters", options.resolution_meters);
+  visit("max_range_meters", options.max_range_meters);
+  visit("min_num_points", options.min_num_points);
+  visit("min_gain", options.min_gain);
+  visit("min_agreement", options.min_agreement);
+  visit("min_translation_meters", options.min_translation_meters);
+  visit("min_rotation", options.min_rotation);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
   visit("rotation_sigma_per_sqrt_meter", options.rotation_sigma_per_sqrt_meter);
   visit("translation_sigma_per_meter", options.translation_sigma_per_meter);
@@ -192,6 +204,8 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
   visit("place", options.place);
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
+  visit("silence_torn_submaps", options.silence_torn_submaps);
+  visit("tear", options.tear);
   visit("consistency", options.consistency);
   visit("lifting", options.lifting);
   visit("optimization", options.optimization);

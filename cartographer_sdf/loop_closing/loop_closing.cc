@@ -48,11 +48,18 @@ std::vector<SurfacePoint> ToSurfacePoints(const PointCloud2& cloud) {
   return points;
 }
 
+// A closure of a torn submap has no voice: it speaks neither for nor against
+// others, and needs their support.
 void SelectClosures(const ConsistencyOptions& options, const MapState& state,
+                    const std::map<SubmapId, Tear>& torn,
                     std::vector<ClosureOutcome>* const outcomes) {
   std::vector<LoopClosure> closures;
   for (const ClosureOutcome& outcome : *outcomes) {
     closures.push_back(outcome.match.closure);
+    LoopClosure& closure = closures.back();
+    if (torn.count(closure.reference) + torn.count(closure.query) > 0) {
+      closure.score = std::min(closure.score, 0.);
+    }
   }
   const std::vector<SelectionResult> results =
       SelectConsistent(options, OdometryPoses(state), closures);
@@ -131,8 +138,9 @@ OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.place), Validate(options.match),
-        Validate(options.consistency), Validate(options.lifting),
-        Validate(options.optimization), Validate(options.withdrawal)}) {
+        Validate(options.tear), Validate(options.consistency),
+        Validate(options.lifting), Validate(options.optimization),
+        Validate(options.withdrawal)}) {
     if (!error.empty()) return error;
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";
@@ -197,8 +205,17 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
     result.closures.push_back({std::move(match), Fate::kInGraph, {}, {}});
   }
 
+  if (options.silence_torn_submaps) {
+    absl::StatusOr<std::map<SubmapId, Tear>> torn =
+        FindTornSubmaps(options.tear, path, result.state.pose_graph, executor,
+                        clock.Begin("find torn submaps"));
+    if (!torn.ok()) return torn.status();
+    result.torn_submaps = *std::move(torn);
+  }
+
   clock.Begin("select consistent");
-  SelectClosures(options.consistency, result.state, &result.closures);
+  SelectClosures(options.consistency, result.state, result.torn_submaps,
+                 &result.closures);
 
   const ProgressCallback lift_progress = clock.Begin("lift to constraints");
   const absl::StatusOr<ScansByNode> scans =

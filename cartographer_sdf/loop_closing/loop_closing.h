@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/closure/consistency.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/loop_closing/torn_submaps.h"
 #include "cartographer_sdf/loop_closing/withdrawal.h"
 #include "cartographer_sdf/pose_graph/lifting.h"
 #include "cartographer_sdf/pose_graph/odometry_weights.h"
@@ -30,6 +32,11 @@ struct LoopClosingOptions {
   // Submaps of one trajectory are matched from this difference of their
   // indices on; nearer ones share scans.
   int min_index_gap = 3;
+  // Whether submaps that their own scans show to be torn are kept from voting:
+  // their closures neither support nor contradict others, and enter the graph
+  // only where others support them.
+  bool silence_torn_submaps = true;
+  TearOptions tear;
   ConsistencyOptions consistency;
   LiftingOptions lifting;
   OptimizationOptions optimization;
@@ -45,6 +52,8 @@ struct LoopClosingResult {
   PoseGraph pose_graph;  // optimised, with the new constraints at the end
   std::vector<ClosureOutcome> closures;  // all accepted matches, by ids
   size_t num_places = 0;
+  // Empty where nobody asked.
+  std::map<SubmapId, Tear> torn_submaps;
   size_t num_matches = 0;  // poses that were verified, accepted or not
   // The options in force, odometry weights as inferred.
   OptimizationOptions optimization;

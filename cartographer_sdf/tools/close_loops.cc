@@ -62,6 +62,13 @@ void PrintSummary(const LoopClosingResult& result) {
   for (const auto& [fate, count] : fates) {
     std::cout << absl::StrFormat("  %5d %s\n", count, FateName(fate));
   }
+  if (!result.torn_submaps.empty()) {
+    std::cout << absl::StrFormat("%d submaps are torn inside:\n",
+                                 result.torn_submaps.size());
+    for (const auto& [id, tear] : result.torn_submaps) {
+      std::cout << "  " << DescribeTear(id, tear) << "\n";
+    }
+  }
   if (result.closures.empty()) {
     std::cout << "No loop closure was found; the map is as it was.\n";
   }

@@ -239,6 +239,12 @@ std::vector<std::string> MakeWarnings(const LoopClosingResult& result) {
         " closures were withdrawn because the optimised map contradicts them: "
         "there are places that look alike. Look at the map where they were."));
   }
+  for (const auto& [id, tear] : result.torn_submaps) {
+    warnings.push_back(
+        absl::StrCat("A submap is torn inside, and kept from "
+                     "voting. ",
+                     DescribeTear(id, tear)));
+  }
   if (!result.optimizations.empty() && !result.optimizations.back().converged) {
     warnings.push_back(absl::StrCat("The optimisation did not converge: ",
                                     result.optimizations.back().message));
@@ -255,6 +261,7 @@ std::vector<std::pair<std::string, std::string>> MakeSummary(
       {"Pairs with a pose", absl::StrCat(result.num_matches)},
       {"Accepted by verification", absl::StrCat(result.closures.size())},
       {"Closures in the graph", absl::StrCat(Count(result, Fate::kInGraph))},
+      {"Torn submaps", absl::StrCat(result.torn_submaps.size())},
       {"Contradicted by others",
        absl::StrCat(Count(result, Fate::kContradicted))},
       {"Unsupported", absl::StrCat(Count(result, Fate::kUnsupported))},

@@ -47,10 +47,12 @@ std::vector<Eigen::Vector2d> PointsInRange(const TearOptions& options,
                                            const InsertedScan& scan) {
   std::vector<Eigen::Vector2d> points;
   points.reserve(scan.points.size());
+  const Eigen::Matrix2d R_submap_node = scan.T_submap_node.RotationMatrix();
   for (const Eigen::Vector2f& point : scan.points) {
     const Eigen::Vector2d p_node = point.cast<double>();
     if (!(p_node.norm() <= options.max_range_meters)) continue;
-    points.emplace_back(scan.T_submap_node * p_node);
+    points.emplace_back(R_submap_node * p_node +
+                        scan.T_submap_node.translation());
   }
   return points;
 }
@@ -94,15 +96,23 @@ std::optional<OccupancyGrid> DrawPart(const TearOptions& options,
     log_odds(cell.x(), cell.y()) += change;
     grid.known(cell.x(), cell.y()) = true;
   };
+  // Continuous cell coordinates in which cell (i, j) is [i, i + 1) x [j, j +
+  // 1).
+  const Rigid2 T_grid_submap = geometry->T_submap_grid.Inverse();
+  const auto to_cells = [&](const Eigen::Vector2d& p_submap) {
+    return Eigen::Array2d(
+        geometry->GridToCells(T_grid_submap * p_submap).array() + 0.5);
+  };
   for (Scans scan = begin; scan != end; ++scan) {
-    const Eigen::Vector2d& origin = scan->T_submap_node.translation();
+    const Eigen::Array2d from = to_cells(scan->T_submap_node.translation());
     for (const Eigen::Vector2d& p : PointsInRange(options, *scan)) {
-      const Eigen::Array2i hit = geometry->CellAt(p);
-      const int num_steps = static_cast<int>(
-          std::ceil((p - origin).norm() / geometry->resolution));
+      const Eigen::Array2d to = to_cells(p);
+      const Eigen::Array2i hit = to.cast<int>();
+      const int num_steps =
+          static_cast<int>(std::ceil((to - from).matrix().norm()));
+      const Eigen::Array2d step = (to - from) / std::max(num_steps, 1);
       for (int k = 0; k < num_steps; ++k) {
-        const Eigen::Array2i cell = geometry->CellAt(
-            origin + static_cast<double>(k) / num_steps * (p - origin));
+        const Eigen::Array2i cell = (from + k * step).cast<int>();
         if ((cell == hit).all()) break;
         update(cell, kMissLogOdds);
       }

@@ -235,8 +235,8 @@ TEST_F(SimulatedOfficeTest, TellsItsStages) {
     EXPECT_GE(seconds, 0.);
   }
   EXPECT_THAT(stages, ElementsAre("read and describe", "match and verify",
-                                  "select consistent", "lift to constraints",
-                                  "optimise"));
+                                  "find torn submaps", "select consistent",
+                                  "lift to constraints", "optimise"));
 }
 
 TEST(CloseLoopsTest, FailsWithoutAMap) {
@@ -257,6 +257,7 @@ TEST(LoopClosingOptionsTest, AreValidated) {
   EXPECT_NE(error([](auto* o) { o->min_index_gap = 0; }), "");
   EXPECT_NE(error([](auto* o) { o->withdrawal.max_num_rounds = -1; }), "");
   EXPECT_NE(error([](auto* o) { o->match.inlier_distance_meters = 0.; }), "");
+  EXPECT_NE(error([](auto* o) { o->tear.num_parts = 0; }), "");
   EXPECT_NE(error([](auto* o) { o->lifting.num_nodes_per_submap = 0; }), "");
 }
 

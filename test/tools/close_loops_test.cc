@@ -16,6 +16,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/program.h"
 #include "test/testing/shared_data.h"
+#include "test/testing/slipped_map.h"
 #include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf {
@@ -97,6 +98,28 @@ TEST_F(CloseLoopsTest, StraightensASimulatedMap) {
   EXPECT_THAT(
       page, AllOf(HasSubstr("open.pbstream"), HasSubstr("Before"),
                   HasSubstr("SDF_GLOBAL_CONSTRAINTS"), Not(HasSubstr("http"))));
+}
+
+TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
+  const std::string slipped = File("slipped.pbstream");
+  testing::WriteOffice(testing::Slip::kInSubmaps8And9, slipped);
+  const ProgramResult info =
+      RunTestProgram({"info", "--input", slipped, "--torn_submaps"});
+  EXPECT_EQ(info.exit_code, 0) << info.error;
+  EXPECT_THAT(info.output,
+              AllOf(HasSubstr("Torn submaps: 2\n"), HasSubstr("\n  0,8: part"),
+                    HasSubstr("\n  0,9: part")));
+  // Only on demand: it takes time.
+  EXPECT_THAT(RunTestProgram({"info", "--input", slipped}).output,
+              Not(HasSubstr("Torn")));
+  const ProgramResult closed = RunTestProgram(
+      {"close_loops", "--input", slipped, "--output",
+       File("slipped_closed.pbstream"), "--report", File("slipped_report")});
+  EXPECT_EQ(closed.exit_code, 0) << closed.error;
+  EXPECT_THAT(closed.output, AllOf(HasSubstr("2 submaps are torn inside:\n"),
+                                   HasSubstr("\n  0,9: part")));
+  EXPECT_THAT(directory_->Read("slipped_report/index.html"),
+              AllOf(HasSubstr("torn inside"), HasSubstr("0,9: part")));
 }
 
 TEST_F(CloseLoopsTest, DoesNotDependOnThreads) {
