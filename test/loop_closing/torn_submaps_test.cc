@@ -136,7 +136,8 @@ TEST(DescribeTearTest, IsOneLine) {
             "0,15: part 5 against part 2 off by 0.58 m, 1.8 deg");
 }
 
-// What the true poses of the nodes say too: a step of 0.4 m in the middle.
+// The true poses of its nodes disagree too, by 0.4 m. That is less than the
+// 0.5 m from which the data's labels call a submap torn.
 TEST(RealMapTest, FindsTheTearOfAces) {
   SKIP_WITHOUT_SHARED_DATA("aces_open_loop.pbstream");
   const std::string path = SharedDataPath("aces_open_loop.pbstream");
