@@ -182,6 +182,27 @@ TEST_F(CloseLoopsTest, MatchesByEitherMethod) {
   }
 }
 
+TEST_F(CloseLoopsTest, SimulatesAsLargeAsAsked) {
+  const auto simulate = [](const std::vector<std::string>& flags) {
+    std::vector<std::string> arguments = {"simulate", "--output",
+                                          File("short.pbstream"), "--truth",
+                                          File("short.csv")};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return RunTestProgram(arguments);
+  };
+  const ProgramResult result =
+      simulate({"--length", "60", "--plan_width", "60", "--plan_height", "50"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto map = ReadMap(File("short.pbstream"));
+  const auto longer = ReadMap(File("open.pbstream"));
+  ASSERT_TRUE(map.ok() && longer.ok());
+  // 60 m of 360 m, at a submap every 12 m or so.
+  EXPECT_GE(map->submaps.size(), 2u);
+  EXPECT_LT(3 * map->submaps.size(), longer->submaps.size());
+  EXPECT_THAT(simulate({"--plan_width", "5"}).error, HasSubstr("width"));
+  EXPECT_THAT(simulate({"--length", "-1"}).error, HasSubstr("length"));
+}
+
 // Of one map, and of two of one building whose ids are the same.
 TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
   ASSERT_EQ(RunTestProgram({"simulate", "--output", File("second.pbstream"),
