@@ -121,6 +121,8 @@ SDF_GLOBAL_CONSTRAINTS = {
         agreement = {
           hit_distance_meters = 0.15,
           contradiction_distance_meters = 0.25,
+          -- Whether walls and free space count by how certain they are.
+          weigh_by_certainty = true,
         },
         -- Wall points of each submap for it.
         num_agreement_points = 1000,

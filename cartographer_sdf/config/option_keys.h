@@ -101,6 +101,7 @@ template <typename Visitor>
 void VisitOptions(Visitor& visit, AgreementOptions& options) {
   visit("hit_distance_meters", options.hit_distance_meters);
   visit("contradiction_distance_meters", options.contradiction_distance_meters);
+  visit("weigh_by_certainty", options.weigh_by_certainty);
 }
 
 template <typename Visitor>
