@@ -29,6 +29,7 @@ import csv
 import hashlib
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -338,21 +339,25 @@ return SDF_GLOBAL_CONSTRAINTS
 
 class Workshop:
     """Runs the program and keeps what it made in a folder, by the content of
-    the program and its options."""
+    the program and its options. Both are copied there first: a long run does
+    not mind that they are worked on."""
 
     def __init__(self, program, work, threads):
-        self.program = program
         self.work = work
         self.threads = threads
         if not os.access(program, os.X_OK):
             raise Failure(f"build first: {program} is missing")
+        options = (SOURCE_DIR / "configuration_files" /
+                   "sdf_global_constraints.lua").read_bytes()
         digest = hashlib.sha256(program.read_bytes())
-        digest.update(
-            (SOURCE_DIR / "configuration_files" /
-             "sdf_global_constraints.lua").read_bytes())
+        digest.update(options)
         digest.update(CONFIGURATION.encode())
-        self.folder = work / digest.hexdigest()[:12]
+        self.folder = (work / digest.hexdigest()[:12]).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
+        self.program = self.folder / "cartographer_sdf"
+        if not self.program.exists():
+            shutil.copy2(program, self.program)
+        (self.folder / "sdf_global_constraints.lua").write_bytes(options)
         (self.folder / "learn.lua").write_text(CONFIGURATION, encoding="utf-8")
 
     def run(self, *arguments):

@@ -16,6 +16,7 @@ import datetime
 import os
 import pathlib
 import shlex
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -76,6 +77,9 @@ VARIANTS = [
             "verification.ranking.contradiction_weight = 0.\n"
             'drop("contradiction")\n'
             "verification.max_contradiction_ratio = 1.", (), False),
+    Variant("certainty_ignored",
+            "every wall and every free cell is as certain as any",
+            "verification.agreement.weigh_by_certainty = false", (), False),
     Variant("no_rivals", "the next best pose does not matter",
             'drop("margin")\nverification.min_margin = 0.', (), False),
     Variant("hit_ratio_as_score", "the score is the mean hit ratio",
@@ -142,13 +146,23 @@ def run(arguments):
     return usage.ru_utime + usage.ru_stime
 
 
+def configuration_name(variant):
+    return f"ablation_{variant.name}.lua"
+
+
+def write_configuration(work, variant):
+    (work / configuration_name(variant)).write_text(
+        f"{PREAMBLE}{variant.overrides}\nreturn SDF_GLOBAL_CONSTRAINTS\n",
+        encoding="utf-8")
+
+
 def check_configuration(program, work, variant):
     """Fails where the overrides do not fit the options; sooner than a run of
     many minutes would."""
     result = subprocess.run(
         [program, "match", "--input", os.devnull, "--output", os.devnull,
          "--configuration_directory", work, "--configuration_basename",
-         f"{variant.name}.lua"], capture_output=True, text=True, check=False)
+         configuration_name(variant)], capture_output=True, text=True, check=False)
     if "configuration file" in result.stderr:
         raise Failure(f"variant {variant.name}: {result.stderr.strip()}")
 
@@ -167,13 +181,12 @@ def measure(program, data, work, name, variant):
     """The numbers of one variant on one data set."""
     paths = [data / path for path in SETS[name]]
     base = work / f"{name}.{variant.name}"
-    configuration = work / f"{variant.name}.lua"
     matches, labels, numbers = (
         pathlib.Path(f"{base}.{kind}.csv")
         for kind in ("matches", "labels", "numbers"))
-    flags = [] if "--method" in variant.flags else [
-        "--configuration_directory", work, "--configuration_basename",
-        configuration.name]
+    flags = ["--configuration_directory", work]
+    if "--method" not in variant.flags:
+        flags += ["--configuration_basename", configuration_name(variant)]
     query = ["--query", paths[2]] if len(paths) == 4 else []
     cpu = run([program, "match", "--input", paths[0], *query, "--output",
                matches, "--threads", 1, *flags, *variant.flags])
@@ -217,9 +230,10 @@ def output_of(*arguments):
 
 def processor():
     try:
-        for line in open("/proc/cpuinfo", encoding="utf-8"):
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            for line in file:
+                if line.startswith("model name"):
+                    return line.split(":", 1)[1].strip()
     except OSError:
         pass
     return "an unknown processor"
@@ -308,10 +322,12 @@ def main():
         results = {}
         with tempfile.TemporaryDirectory() as directory:
             work = pathlib.Path(directory)
+            # A long run does not mind that they are worked on.
+            program = pathlib.Path(shutil.copy2(program, work))
+            for path in (SOURCE_DIR / "configuration_files").glob("*.lua"):
+                shutil.copy2(path, work)
             for variant in variants:
-                (work / f"{variant.name}.lua").write_text(
-                    f"{PREAMBLE}{variant.overrides}\n"
-                    "return SDF_GLOBAL_CONSTRAINTS\n", encoding="utf-8")
+                write_configuration(work, variant)
                 check_configuration(program, work, variant)
             with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
                 # Variants of one data set side by side, so that what else the

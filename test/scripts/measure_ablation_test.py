@@ -27,9 +27,7 @@ class MeasureAblationTest(unittest.TestCase):
         self.directory = pathlib.Path(directory.name)
 
     def check(self, variant):
-        (self.directory / f"{variant.name}.lua").write_text(
-            f"{measure_ablation.PREAMBLE}{variant.overrides}\n"
-            "return SDF_GLOBAL_CONSTRAINTS\n", encoding="utf-8")
+        measure_ablation.write_configuration(self.directory, variant)
         measure_ablation.check_configuration(PROGRAM, self.directory, variant)
 
     def test_every_variant_fits_the_options(self):
