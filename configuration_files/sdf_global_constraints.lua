@@ -31,6 +31,9 @@ SDF_GLOBAL_CONSTRAINTS = {
         non_maximum_suppression_cells = 4,
         -- [cells] No keypoints this near to where free space meets the unknown.
         unobserved_border_cells = 1.5,
+        -- [m] No keypoints farther from walls. Smaller: free space counts for
+        -- less.
+        max_clearance_meters = 1000.,
       },
       descriptor = {
         -- [m] Window around a keypoint. Larger: more distinctive, less often
@@ -61,6 +64,8 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Whether features without a clearly nearest neighbour are dropped.
         use_ratio_test = false,
         max_ratio = 0.75,
+        -- Whether a maximum matches maxima only, and so on.
+        same_kind_only = true,
         -- [m] Features whose distance to walls differs by more do not match.
         max_clearance_difference_meters = 0.2,
       },
@@ -116,6 +121,8 @@ SDF_GLOBAL_CONSTRAINTS = {
         agreement = {
           hit_distance_meters = 0.15,
           contradiction_distance_meters = 0.25,
+          -- Whether walls and free space count by how certain they are.
+          weigh_by_certainty = true,
         },
         -- Wall points of each submap for it.
         num_agreement_points = 1000,

@@ -10,7 +10,8 @@ set -euo pipefail
 usage() {
   cat <<END
 usage: scripts/install_dependencies.sh [--development]
-  --development  also what the static checks need (clang-format, clang-tidy)
+  --development  also what the static checks (clang-format, clang-tidy) and
+                 learning the score's weights (numpy) need
 END
 }
 
@@ -23,7 +24,7 @@ PACKAGES=(
   # Tests and benchmarks.
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-DEVELOPMENT_PACKAGES=(clang-format clang-tidy git)
+DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy)
 
 fail() {
   echo "install_dependencies.sh: $*" >&2

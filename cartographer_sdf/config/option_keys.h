@@ -27,6 +27,7 @@ void VisitOptions(Visitor& visit, KeypointOptions& options) {
   visit("detection_threshold", options.detection_threshold);
   visit("non_maximum_suppression_cells", options.non_maximum_suppression_cells);
   visit("unobserved_border_cells", options.unobserved_border_cells);
+  visit("max_clearance_meters", options.max_clearance_meters);
 }
 
 template <typename Visitor>
@@ -51,6 +52,7 @@ void VisitOptions(Visitor& visit, CorrespondenceOptions& options) {
   visit("num_neighbours", options.num_neighbours);
   visit("use_ratio_test", options.use_ratio_test);
   visit("max_ratio", options.max_ratio);
+  visit("same_kind_only", options.same_kind_only);
   visit("max_clearance_difference_meters",
         options.max_clearance_difference_meters);
 }
@@ -99,6 +101,7 @@ template <typename Visitor>
 void VisitOptions(Visitor& visit, AgreementOptions& options) {
   visit("hit_distance_meters", options.hit_distance_meters);
   visit("contradiction_distance_meters", options.contradiction_distance_meters);
+  visit("weigh_by_certainty", options.weigh_by_certainty);
 }
 
 template <typename Visitor>

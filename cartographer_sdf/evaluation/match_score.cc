@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cartographer_sdf/evaluation/error_statistics.h"
+#include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -80,68 +81,48 @@ bool ShareScans(const SubmapId& a, const SubmapId& b) {
          std::abs(a.index - b.index) <= kMaxIndexDifferenceOfNeighbours;
 }
 
-struct Answer {
-  double score = 0.;
-  bool to_positive = false;
-  double translation_error = 0.;
-  double rotation_error = 0.;
-
-  bool IsRight() const {
-    return translation_error < kRightTranslation &&
-           rotation_error < kMaxRotation;
+AnswerVerdict Judge(const double translation_error,
+                    const double rotation_error) {
+  if (translation_error < kRightTranslation && rotation_error < kMaxRotation) {
+    return AnswerVerdict::kRight;
   }
-  bool IsWrong() const {
-    return translation_error > kWrongTranslation ||
-           rotation_error > kMaxRotation;
+  if (translation_error > kWrongTranslation || rotation_error > kMaxRotation) {
+    return AnswerVerdict::kWrong;
   }
-};
+  return AnswerVerdict::kNear;
+}
 
-Answer MakeAnswer(const PairTruth& pair, const Rigid2& T_world_reference,
-                  const Rigid2& T_world_query, const MatchRow& match) {
+AnswerLabel MakeLabel(const PairTruth& pair, const Rigid2& T_world_reference,
+                      const Rigid2& T_world_query, const MatchRow& match) {
   const Rigid2 T_true_found =
       (T_world_reference.Inverse() * T_world_query).Inverse() *
       match.T_reference_query;
   const Eigen::Vector2d centre_query =
       T_world_query.Inverse() * pair.centre_world;
-  return Answer{match.score, pair.overlap >= kPositiveOverlap,
-                (T_true_found * centre_query - centre_query).norm(),
-                std::abs(T_true_found.rotation())};
+  AnswerLabel label;
+  label.reference = match.reference;
+  label.query = match.query;
+  label.score = match.score;
+  label.overlap = pair.overlap;
+  label.to_positive = pair.overlap >= kPositiveOverlap;
+  label.translation_error = (T_true_found * centre_query - centre_query).norm();
+  label.rotation_error = std::abs(T_true_found.rotation());
+  label.verdict = Judge(label.translation_error, label.rotation_error);
+  return label;
 }
 
-// By falling score; the first answer to each pair only.
-std::vector<Answer> JudgeAnswers(const PairTruths& pairs,
-                                 const Truth& reference_truth,
-                                 const Truth& query_truth,
-                                 const std::vector<MatchRow>& matches) {
-  std::vector<Answer> answers;
-  std::set<std::pair<SubmapId, SubmapId>> seen;
-  for (const MatchRow& match : matches) {
-    const auto pair = pairs.find({match.reference, match.query});
-    if (pair == pairs.end() || !seen.insert(pair->first).second) continue;
-    answers.push_back(MakeAnswer(
-        pair->second, reference_truth.T_world_submap.at(match.reference),
-        query_truth.T_world_submap.at(match.query), match));
-  }
-  std::stable_sort(
-      answers.begin(), answers.end(),
-      [](const Answer& a, const Answer& b) { return a.score > b.score; });
-  return answers;
-}
-
-void FollowPrecisionRecallCurve(const std::vector<Answer>& answers,
+// `answers` by falling score.
+void FollowPrecisionRecallCurve(const std::vector<AnswerLabel>& answers,
                                 MatchScore* const score) {
   const double num_positives = std::max(1, score->num_positives);
   int num_right = 0;
   double sum_of_precisions = 0.;
-  for (const Answer& answer : answers) {
-    const bool is_right_positive = answer.IsRight() && answer.to_positive;
-    if (is_right_positive) {
-      ++num_right;
-    } else if (answer.IsWrong()) {
-      ++score->num_wrong;
-    } else if (!answer.IsRight()) {
-      ++score->num_near;
-    }
+  for (const AnswerLabel& answer : answers) {
+    const bool is_right_positive =
+        answer.verdict == AnswerVerdict::kRight && answer.to_positive;
+    num_right += is_right_positive;
+    score->num_wrong += answer.verdict == AnswerVerdict::kWrong;
+    score->num_near += answer.verdict == AnswerVerdict::kNear;
     const double precision =
         static_cast<double>(num_right) /
         static_cast<double>(std::max(1, num_right + score->num_wrong));
@@ -157,12 +138,12 @@ void FollowPrecisionRecallCurve(const std::vector<Answer>& answers,
   score->average_precision = sum_of_precisions / num_positives;
 }
 
-void SummarizeErrors(const std::vector<Answer>& answers,
+void SummarizeErrors(const std::vector<AnswerLabel>& answers,
                      MatchScore* const score) {
   std::vector<double> translations;
   std::vector<double> rotations;
-  for (const Answer& answer : answers) {
-    if (!answer.IsRight()) continue;
+  for (const AnswerLabel& answer : answers) {
+    if (answer.verdict != AnswerVerdict::kRight) continue;
     translations.push_back(answer.translation_error);
     rotations.push_back(answer.rotation_error);
   }
@@ -217,8 +198,21 @@ PairTruths ComputePairTruths(
   return pairs;
 }
 
-MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,
-                        const std::vector<MatchRow>& matches) {
+const char* AnswerVerdictName(const AnswerVerdict verdict) {
+  switch (verdict) {
+    case AnswerVerdict::kRight:
+      return "right";
+    case AnswerVerdict::kNear:
+      return "near";
+    case AnswerVerdict::kWrong:
+      return "wrong";
+  }
+  LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
+}
+
+std::vector<AnswerLabel> LabelAnswers(const PairTruths& pairs,
+                                      const Truth& truth,
+                                      const std::vector<MatchRow>& matches) {
   std::vector<MatchRow> ordered = matches;
   for (MatchRow& match : ordered) {
     if (match.query < match.reference) {
@@ -226,24 +220,54 @@ MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,
       match.T_reference_query = match.T_reference_query.Inverse();
     }
   }
-  return ScoreMatches(pairs, truth, truth, ordered);
+  return LabelAnswers(pairs, truth, truth, ordered);
 }
 
-MatchScore ScoreMatches(const PairTruths& pairs, const Truth& reference_truth,
-                        const Truth& query_truth,
-                        const std::vector<MatchRow>& matches) {
+std::vector<AnswerLabel> LabelAnswers(const PairTruths& pairs,
+                                      const Truth& reference_truth,
+                                      const Truth& query_truth,
+                                      const std::vector<MatchRow>& matches) {
+  std::vector<AnswerLabel> labels;
+  std::set<std::pair<SubmapId, SubmapId>> seen;
+  for (const MatchRow& match : matches) {
+    const auto pair = pairs.find({match.reference, match.query});
+    if (pair == pairs.end() || !seen.insert(pair->first).second) continue;
+    labels.push_back(MakeLabel(
+        pair->second, reference_truth.T_world_submap.at(match.reference),
+        query_truth.T_world_submap.at(match.query), match));
+  }
+  return labels;
+}
+
+MatchScore ScoreAnswers(const PairTruths& pairs,
+                        const std::vector<AnswerLabel>& labels) {
   MatchScore score;
   score.num_pairs = static_cast<int>(pairs.size());
   score.num_positives = static_cast<int>(
       std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) {
         return pair.second.overlap >= kPositiveOverlap;
       }));
-  const std::vector<Answer> answers =
-      JudgeAnswers(pairs, reference_truth, query_truth, matches);
-  score.num_answers = static_cast<int>(answers.size());
+  score.num_answers = static_cast<int>(labels.size());
+  std::vector<AnswerLabel> answers = labels;
+  std::stable_sort(answers.begin(), answers.end(),
+                   [](const AnswerLabel& a, const AnswerLabel& b) {
+                     return a.score > b.score;
+                   });
   FollowPrecisionRecallCurve(answers, &score);
   SummarizeErrors(answers, &score);
   return score;
+}
+
+MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,
+                        const std::vector<MatchRow>& matches) {
+  return ScoreAnswers(pairs, LabelAnswers(pairs, truth, matches));
+}
+
+MatchScore ScoreMatches(const PairTruths& pairs, const Truth& reference_truth,
+                        const Truth& query_truth,
+                        const std::vector<MatchRow>& matches) {
+  return ScoreAnswers(
+      pairs, LabelAnswers(pairs, reference_truth, query_truth, matches));
 }
 
 }  // namespace cartographer_sdf

@@ -53,6 +53,33 @@ using PairTruths = std::map<std::pair<SubmapId, SubmapId>, PairTruth>;
     const std::map<SubmapId, ObservedPoints>& query_submaps,
     const Truth& query_truth);
 
+enum class AnswerVerdict { kRight, kNear, kWrong };
+// "right", "near", "wrong"
+[[nodiscard]] const char* AnswerVerdictName(AnswerVerdict verdict);
+
+// What the truth says of a match.
+struct AnswerLabel {
+  SubmapId reference;
+  SubmapId query;
+  double score = 0.;
+  // Of the pair: common area as a fraction of the smaller one's, and whether
+  // that is enough to count.
+  double overlap = 0.;
+  bool to_positive = false;
+  AnswerVerdict verdict = AnswerVerdict::kWrong;
+  double translation_error = 0.;  // [m]
+  double rotation_error = 0.;     // not negative [rad]
+};
+
+// The first answer to each pair of `pairs`, in the order of the table. Matches
+// of one map: an answer for (i, j) with i > j is inverted, and labelled (j, i).
+[[nodiscard]] std::vector<AnswerLabel> LabelAnswers(
+    const PairTruths& pairs, const Truth& truth,
+    const std::vector<MatchRow>& matches);
+[[nodiscard]] std::vector<AnswerLabel> LabelAnswers(
+    const PairTruths& pairs, const Truth& reference_truth,
+    const Truth& query_truth, const std::vector<MatchRow>& matches);
+
 struct MatchScore {
   int num_pairs = 0;
   int num_positives = 0;
@@ -75,7 +102,11 @@ struct MatchScore {
   std::optional<double> median_rotation_error;     // [rad]
 };
 
-// Matches of one map: an answer for (i, j) with i > j is inverted.
+// `labels` are LabelAnswers' for the same pairs.
+[[nodiscard]] MatchScore ScoreAnswers(const PairTruths& pairs,
+                                      const std::vector<AnswerLabel>& labels);
+
+// ScoreAnswers of LabelAnswers.
 [[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,
                                       const Truth& truth,
                                       const std::vector<MatchRow>& matches);

@@ -168,6 +168,9 @@ std::string Validate(const KeypointOptions& options) {
         options.unobserved_border_cells <= 100.)) {
     return "unobserved_border_cells must lie between 0 and 100";
   }
+  if (!(options.max_clearance_meters > 0.)) {
+    return "max_clearance_meters must be positive";
+  }
   return "";
 }
 
@@ -202,15 +205,16 @@ std::vector<Keypoint> DetectKeypoints(const KeypointOptions& options,
                                               magnitude(i, j),
                                               magnitude(i, j + 1)));
       const Eigen::Vector2d p_grid = field.geometry.CellsToGrid(cells);
+      const double clearance = SampleField(field, p_grid)->distance;
+      if (std::abs(clearance) > options.max_clearance_meters) continue;
       const Hessian hessian = SobelHessian(smoothed, i, j);
       const KeypointKind kind =
           hessian.xx * hessian.yy < hessian.xy * hessian.xy
               ? KeypointKind::kSaddle
           : hessian.xx + hessian.yy < 0.f ? KeypointKind::kMaximum
                                           : KeypointKind::kMinimum;
-      keypoints.push_back({field.geometry.T_submap_grid * p_grid,
-                           SampleField(field, p_grid)->distance, kind,
-                           magnitude(i, j)});
+      keypoints.push_back({field.geometry.T_submap_grid * p_grid, clearance,
+                           kind, magnitude(i, j)});
     }
   }
   return keypoints;

@@ -29,6 +29,9 @@ struct KeypointOptions {
   // Keypoints this near to a border between free and unobserved cells are
   // dropped [cells]; walls are no such border. The paper leaves it open.
   double unobserved_border_cells = 1.5;
+  // Keypoints farther from any wall are dropped [m], which is how
+  // [Millane2019] measures what free space is worth. No lidar sees this far.
+  double max_clearance_meters = 1000.;
 };
 [[nodiscard]] std::string Validate(const KeypointOptions& options);
 

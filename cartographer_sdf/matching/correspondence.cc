@@ -13,12 +13,15 @@
 namespace cartographer_sdf {
 namespace {
 
+// All as if of the first kind where kinds may mix.
 std::array<std::vector<int>, kNumKeypointKinds> IndicesByKind(
-    const FeatureSet& set) {
+    const CorrespondenceOptions& options, const FeatureSet& set) {
   std::array<std::vector<int>, kNumKeypointKinds> indices;
   for (size_t k = 0; k < set.features.size(); ++k) {
-    indices[static_cast<int>(set.features[k].keypoint.kind)].push_back(
-        static_cast<int>(k));
+    const int kind = options.same_kind_only
+                         ? static_cast<int>(set.features[k].keypoint.kind)
+                         : 0;
+    indices[kind].push_back(static_cast<int>(k));
   }
   return indices;
 }
@@ -81,8 +84,8 @@ std::vector<Correspondence> FindCorrespondences(
   std::vector<Correspondence> correspondences;
   if (reference.features.empty() || query.features.empty()) return {};
   CHECK_EQ(reference.descriptors.rows(), query.descriptors.rows());
-  const auto reference_indices = IndicesByKind(reference);
-  const auto query_indices = IndicesByKind(query);
+  const auto reference_indices = IndicesByKind(options, reference);
+  const auto query_indices = IndicesByKind(options, query);
   for (int kind = 0; kind < kNumKeypointKinds; ++kind) {
     const std::vector<int>& rows = reference_indices[kind];
     if (rows.empty() || query_indices[kind].empty()) continue;

@@ -20,6 +20,9 @@ struct CorrespondenceOptions {
   bool use_ratio_test = false;
   // Largest ratio of the two distances; Table I.
   double max_ratio = 0.75;
+  // Whether features correspond to those of their own kind only
+  // ([Millane2019], Sec. IV-C).
+  bool same_kind_only = true;
   // Features whose clearance differs by more do not correspond [m].
   double max_clearance_difference_meters = 0.2;
 };
@@ -32,8 +35,9 @@ struct Correspondence {
   float descriptor_distance;
 };
 
-// Putative correspondences between features of the same kind, exhaustively:
-// kind by kind, in the order of the query features, nearest first.
+// Putative correspondences between features, exhaustively: kind by kind (all
+// together where kinds may mix), in the order of the query features, nearest
+// first.
 [[nodiscard]] std::vector<Correspondence> FindCorrespondences(
     const CorrespondenceOptions& options, const FeatureSet& reference,
     const FeatureSet& query);

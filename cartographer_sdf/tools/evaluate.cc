@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_sdf/evaluation/learning_tables.h"
 #include "cartographer_sdf/evaluation/match_score.h"
 #include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/relations.h"
@@ -31,6 +32,8 @@ DEFINE_double(seconds_per_scan, 0.1,
               "Scan i of the relations has the stamp 1e9 + i * this in the "
               "map [s].");
 DEFINE_string(matches, "", "Matches to score, as `match` writes them.");
+DEFINE_string(labels, "",
+              "The file to write to what the truth says of each match.");
 DEFINE_string(query_truth, "",
               "True poses of the second map, in the world of the first.");
 DEFINE_string(csv, "", "The file to write all numbers to.");
@@ -143,20 +146,24 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
   const absl::StatusOr<std::vector<MatchRow>> matches =
       ReadMatches(FLAGS_matches);
   if (!matches.ok()) return matches.status();
+  PairTruths pairs;
+  std::vector<AnswerLabel> labels;
   if (FLAGS_query.empty()) {
-    measurements->push_back(MeasureMatches(
-        ScoreMatches(ComputePairTruths(map.observed, truth), truth, *matches)));
-    return absl::OkStatus();
+    pairs = ComputePairTruths(map.observed, truth);
+    labels = LabelAnswers(pairs, truth, *matches);
+  } else {
+    const absl::StatusOr<EvaluatedMap> query =
+        ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
+    if (!query.ok()) return query.status();
+    const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
+    if (!query_truth.ok()) return query_truth.status();
+    pairs =
+        ComputePairTruths(map.observed, truth, query->observed, *query_truth);
+    labels = LabelAnswers(pairs, truth, *query_truth, *matches);
   }
-  const absl::StatusOr<EvaluatedMap> query =
-      ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
-  if (!query.ok()) return query.status();
-  const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
-  if (!query_truth.ok()) return query_truth.status();
-  measurements->push_back(MeasureMatches(ScoreMatches(
-      ComputePairTruths(map.observed, truth, query->observed, *query_truth),
-      truth, *query_truth, *matches)));
-  return absl::OkStatus();
+  measurements->push_back(MeasureMatches(ScoreAnswers(pairs, labels)));
+  if (FLAGS_labels.empty()) return absl::OkStatus();
+  return WriteAnswerLabels(FLAGS_labels, labels);
 }
 
 std::string FormatNumber(const std::optional<double>& number) {
@@ -212,6 +219,9 @@ absl::Status CheckFlags() {
   if (!FLAGS_query.empty() && FLAGS_matches.empty()) {
     return UsageError("--query needs --matches");
   }
+  if (!FLAGS_labels.empty() && FLAGS_matches.empty()) {
+    return UsageError("--labels needs --matches");
+  }
   if (!(FLAGS_seconds_per_scan > 0.) ||
       !std::isfinite(FLAGS_seconds_per_scan)) {
     return UsageError("--seconds_per_scan must be positive");
@@ -266,9 +276,10 @@ Subcommand Evaluate() {
       "precision of 0.99 (recall_p99), and average precision (ap).\n\n"
       "A pair of submaps is positive where half of the smaller observed area "
       "lies in the other. An answer is right within 0.5 m and 10 degrees of "
-      "the truth, wrong beyond 1 m or 10 degrees, and near between.",
+      "the truth, wrong beyond 1 m or 10 degrees, and near between. --labels "
+      "writes this for each match.",
       {"input"},
-      {"relations", "seconds_per_scan", "truth", "matches", "query",
+      {"relations", "seconds_per_scan", "truth", "matches", "labels", "query",
        "query_truth", "csv"},
       &RunEvaluate};
 }

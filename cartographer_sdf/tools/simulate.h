@@ -10,6 +10,8 @@
 
 #include "absl/status/status.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/simulation/drive.h"
+#include "cartographer_sdf/simulation/office.h"
 
 namespace cartographer_sdf {
 
@@ -20,6 +22,9 @@ struct SimulateArguments {
   // office.
   std::optional<std::string> plan_path;
   double plan_resolution = 0.05;
+  OfficeOptions office;
+  // Way to go [m].
+  double length = DriveOptions().length;
   // Of the office; and of the drive, drift and noise: sessions in one building
   // share the first and differ in the second.
   uint32_t plan_seed = 1;

@@ -15,6 +15,9 @@ DEFINE_string(
     "office is invented.");
 DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
 DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
+DEFINE_double(plan_width, 40., "Of the office that is invented [m].");
+DEFINE_double(plan_height, 30., "Of the office that is invented [m].");
+DEFINE_double(length, 360., "How far the robot drives [m].");
 DEFINE_uint32(seed, 1,
               "Of the drive, its drift and the noise. Two sessions in one "
               "building differ in it alone.");
@@ -28,6 +31,9 @@ absl::Status RunSimulateOfFlags() {
   arguments.truth_path = FLAGS_truth;
   if (!FLAGS_map.empty()) arguments.plan_path = FLAGS_map;
   arguments.plan_resolution = FLAGS_map_resolution;
+  arguments.office.width = FLAGS_plan_width;
+  arguments.office.height = FLAGS_plan_height;
+  arguments.length = FLAGS_length;
   arguments.plan_seed = FLAGS_plan_seed;
   arguments.drive_seed = FLAGS_seed;
   absl::Status status;
@@ -50,7 +56,8 @@ Subcommand SimulateSubcommand() {
       "building and writes what Cartographer would have saved without loop "
       "closing, and the true poses of its submaps and nodes.",
       {"output", "truth"},
-      {"map", "map_resolution", "plan_seed", "seed"},
+      {"map", "map_resolution", "plan_seed", "plan_width", "plan_height",
+       "length", "seed"},
       &RunSimulateOfFlags};
 }
 

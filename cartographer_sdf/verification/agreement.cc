@@ -78,7 +78,8 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
     for (size_t k = 0; k < size; ++k) {
       if (cells[k] == nullptr) continue;
       const SurfaceCell& cell = *cells[k];
-      const double weight = points[begin + k].weight;
+      const double weight =
+          options.weigh_by_certainty ? points[begin + k].weight : 1.;
       const double distance = 1e-3 * std::abs(cell.distance);
       // Walls border on the unknown, so a hit may well lie in it.
       if (distance <= hit) {
@@ -88,7 +89,8 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
       } else if (cell.observed) {
         result.num_points += weight;
         if (distance > contradiction) {
-          result.contradictions += weight * cell.free / 255.;
+          result.contradictions +=
+              weight * (options.weigh_by_certainty ? cell.free / 255. : 1.);
         }
       }
     }

@@ -21,6 +21,8 @@ struct AgreementOptions {
   // A wall point in the other's free space, farther than this from its walls,
   // is a contradiction [m]. Between the two it is neither.
   double contradiction_distance_meters = 0.25;
+  // Whether points and cells count by how surely they are occupied or free.
+  bool weigh_by_certainty = true;
 };
 [[nodiscard]] std::string Validate(const AgreementOptions& options);
 

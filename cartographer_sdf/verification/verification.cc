@@ -23,6 +23,20 @@ constexpr size_t kMaxNumSelfSimilarPoses = 3;
 // [m].
 constexpr double kResidualSigma = 0.05;
 
+// A term of the score: its name and its weight's field.
+struct ScoreTerm {
+  const char* name;
+  double ScoreWeights::*weight;
+};
+constexpr std::array<ScoreTerm, kNumScoreTerms> kScoreTerms = {
+    {{"mean_hit_ratio", &ScoreWeights::mean_hit_ratio},
+     {"mean_contradiction_ratio", &ScoreWeights::mean_contradiction_ratio},
+     {"max_contradiction_ratio", &ScoreWeights::max_contradiction_ratio},
+     {"log_overlap_area", &ScoreWeights::log_overlap_area},
+     {"log_overlap", &ScoreWeights::log_overlap},
+     {"sqrt_scatter_eigenvalue", &ScoreWeights::sqrt_scatter_eigenvalue},
+     {"margin", &ScoreWeights::margin}}};
+
 Eigen::Vector2d Middle(const SurfaceModel& model) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : model.observed_points) sum += point;
@@ -161,14 +175,12 @@ const char* VerdictName(const Verdict verdict) {
 }
 
 std::string Validate(const ScoreWeights& weights) {
-  for (const double weight :
-       {weights.mean_hit_ratio, weights.mean_contradiction_ratio,
-        weights.max_contradiction_ratio, weights.log_overlap_area,
-        weights.log_overlap, weights.sqrt_scatter_eigenvalue, weights.margin,
-        weights.bias}) {
-    if (!std::isfinite(weight))
-      return "mean_hit_ratio and others must be finite";
+  for (const ScoreTerm& term : kScoreTerms) {
+    if (!std::isfinite(weights.*term.weight)) {
+      return std::string(term.name) + " must be finite";
+    }
   }
+  if (!std::isfinite(weights.bias)) return "bias must be finite";
   return "";
 }
 
@@ -198,6 +210,12 @@ double Agreement::Quality() const {
          kPerLogArea * std::log(1. + overlap_area);
 }
 
+std::array<const char*, kNumScoreTerms> ScoreTermNames() {
+  std::array<const char*, kNumScoreTerms> names = {};
+  for (int k = 0; k < kNumScoreTerms; ++k) names[k] = kScoreTerms[k].name;
+  return names;
+}
+
 std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement,
                                               const double margin) {
   const DirectedAgreement& a = agreement.query_in_reference;
@@ -215,16 +233,10 @@ double Score(const ScoreWeights& weights, const Agreement& agreement,
              const double margin) {
   const std::array<double, kNumScoreTerms> terms =
       ScoreTerms(agreement, margin);
-  const std::array<double, kNumScoreTerms> factors = {
-      weights.mean_hit_ratio,
-      weights.mean_contradiction_ratio,
-      weights.max_contradiction_ratio,
-      weights.log_overlap_area,
-      weights.log_overlap,
-      weights.sqrt_scatter_eigenvalue,
-      weights.margin};
   double score = weights.bias;
-  for (int k = 0; k < kNumScoreTerms; ++k) score += factors[k] * terms[k];
+  for (int k = 0; k < kNumScoreTerms; ++k) {
+    score += weights.*kScoreTerms[k].weight * terms[k];
+  }
   return score;
 }
 

@@ -86,6 +86,8 @@ constexpr double kMaxMargin = 0.25;
 
 // The terms of ScoreWeights without the bias, in their order.
 constexpr int kNumScoreTerms = 7;
+// As the fields of ScoreWeights are called.
+[[nodiscard]] std::array<const char*, kNumScoreTerms> ScoreTermNames();
 [[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
     const Agreement& agreement, double margin);
 [[nodiscard]] double Score(const ScoreWeights& weights,

@@ -3,6 +3,11 @@
 
 #include "cartographer_sdf/config/options.h"
 
+#include <array>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/config/option_keys.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
@@ -27,6 +32,36 @@ TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
   paper.loop_closing.place = PaperPlaceOptions();
   paper.loop_closing.match = PaperMatchOptions();
   EXPECT_EQ(FormatOptions(*options), FormatOptions(paper));
+}
+
+// Sets the weight of one key to 1, all others to 0.
+struct OneWeight {
+  int wanted;
+  std::vector<std::string> keys;
+  void operator()(const char* const key, double& weight) {
+    weight = static_cast<int>(keys.size()) == wanted ? 1. : 0.;
+    keys.emplace_back(key);
+  }
+};
+
+TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
+  Agreement agreement;
+  agreement.query_in_reference = {100., 90., 2., 0.};
+  agreement.reference_in_query = {50., 40., 2., 0.};
+  agreement.overlap_area = 49.;
+  agreement.overlap = 0.7;
+  agreement.min_scatter_eigenvalue = 0.16;
+  const auto terms = ScoreTerms(agreement, 0.1);
+  const auto names = ScoreTermNames();
+  for (int k = 0; k != kNumScoreTerms; ++k) {
+    ScoreWeights weights;
+    OneWeight visit{k, {}};
+    VisitOptions(visit, weights);
+    ASSERT_EQ(visit.keys.size(), kNumScoreTerms + 1u);
+    EXPECT_EQ(names[k], visit.keys[k]);
+    EXPECT_EQ(visit.keys.back(), "bias");
+    EXPECT_EQ(Score(weights, agreement, 0.1), terms[k]) << names[k];
+  }
 }
 
 TEST(OptionsTest, ReadsWhatItWrites) {

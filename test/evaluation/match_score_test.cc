@@ -169,6 +169,41 @@ TEST(ThinnedObservedPointsTest, TakesEverySecondKnownCellFromTheLastOn) {
   EXPECT_EQ(points.back(), Eigen::Vector2d(0.75, 2.25));
 }
 
+TEST(LabelAnswersTest, SaysWhatTheTruthSays) {
+  MatchRow reversed = Answer(0, 6, 1., Rigid2(0.1, 0., 0.05));
+  std::swap(reversed.reference, reversed.query);
+  reversed.T_reference_query = reversed.T_reference_query.Inverse();
+  MatchRow unknown = Answer(0, 3, 5.);
+  unknown.query = {7, 7};
+  const std::vector<AnswerLabel> labels =
+      LabelAnswers(ComputePairTruths(RowOfRectangles(), Row()), Row(),
+                   {Answer(3, 9, 2., kNear), reversed, unknown,
+                    Answer(0, 12, 9., kWrong), Answer(0, 6, 3.)});
+  // In the order of the table, the repetition and the unknown pair left out.
+  ASSERT_EQ(labels.size(), 3u);
+  EXPECT_EQ(labels[0].reference, (SubmapId{0, 3}));
+  EXPECT_EQ(labels[0].query, (SubmapId{0, 9}));
+  EXPECT_NEAR(labels[0].overlap, 0.25, 1e-12);
+  EXPECT_FALSE(labels[0].to_positive);
+  EXPECT_EQ(labels[0].verdict, AnswerVerdict::kNear);
+  EXPECT_NEAR(labels[0].translation_error, 0.75, 1e-12);
+  EXPECT_NEAR(labels[0].rotation_error, 0., 1e-12);
+  EXPECT_EQ(labels[1].reference, (SubmapId{0, 0}));
+  EXPECT_EQ(labels[1].query, (SubmapId{0, 6}));
+  EXPECT_TRUE(labels[1].to_positive);
+  EXPECT_EQ(labels[1].verdict, AnswerVerdict::kRight);
+  EXPECT_NEAR(labels[1].rotation_error, 0.05, 1e-12);
+  EXPECT_EQ(labels[2].verdict, AnswerVerdict::kWrong);
+  EXPECT_EQ(labels[2].overlap, 0.);
+  EXPECT_EQ(labels[2].score, 9.);
+}
+
+TEST(AnswerVerdictTest, HasANameForEach) {
+  EXPECT_STREQ(AnswerVerdictName(AnswerVerdict::kRight), "right");
+  EXPECT_STREQ(AnswerVerdictName(AnswerVerdict::kNear), "near");
+  EXPECT_STREQ(AnswerVerdictName(AnswerVerdict::kWrong), "wrong");
+}
+
 TEST(ScoreMatchesTest, PerfectAnswersScorePerfectly) {
   // Positive are 0-3, 0-6, 3-6, 6-9 (1/2); 3-9 overlaps by 1/4.
   const MatchScore score = Score(

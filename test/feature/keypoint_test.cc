@@ -397,6 +397,25 @@ TEST(DetectKeypointsTest, AHigherThresholdLeavesTheStrongerOnes) {
   for (const Keypoint& keypoint : strong) EXPECT_GT(keypoint.strength, 0.02);
 }
 
+TEST(DetectKeypointsTest, KeypointsFarFromWallsCanBeLeftOut) {
+  const DistanceField field = FieldOf(testing::OfficeGrid(200));
+  const std::vector<Keypoint> all = Detect(field);
+  KeypointOptions options;
+  size_t last = all.size();
+  for (const double clearance : {1., 0.5, 0.2}) {
+    options.max_clearance_meters = clearance;
+    const std::vector<Keypoint> near = Detect(field, options);
+    size_t expected = 0;
+    for (const Keypoint& keypoint : all) {
+      expected += std::abs(keypoint.clearance) <= clearance;
+    }
+    EXPECT_EQ(near.size(), expected);
+    EXPECT_LT(near.size(), last);
+    EXPECT_GT(near.size(), 0u);
+    last = near.size();
+  }
+}
+
 TEST(DetectKeypointsTest, NoneWhereFreeSpaceMeetsTheUnobserved) {
   // A room of which only a part is seen.
   OccupancyGrid grid =
@@ -496,6 +515,8 @@ TEST(KeypointOptionsTest, ValidateNamesTheOption) {
               HasSubstr("non_maximum_suppression_cells"));
   EXPECT_THAT(error(&KeypointOptions::unobserved_border_cells, -1.),
               HasSubstr("unobserved_border_cells"));
+  EXPECT_THAT(error(&KeypointOptions::max_clearance_meters, 0.),
+              HasSubstr("max_clearance_meters"));
 }
 
 }  // namespace

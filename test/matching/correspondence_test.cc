@@ -105,6 +105,24 @@ TEST(FindCorrespondencesTest, EqualsBruteForce) {
   }
 }
 
+TEST(FindCorrespondencesTest, KindsMayMixOnRequest) {
+  std::mt19937 engine(42);
+  FeatureSet reference = RandomFeatures(150, 10., 18, &engine);
+  FeatureSet query = RandomFeatures(120, 10., 18, &engine);
+  CorrespondenceOptions options;
+  const auto apart = FindCorrespondences(options, reference, query);
+  options.same_kind_only = false;
+  const auto mixed = FindCorrespondences(options, reference, query);
+  EXPECT_GT(mixed.size(), apart.size());
+  // As if all were of one kind.
+  for (FeatureSet* const set : {&reference, &query}) {
+    for (Feature& feature : set->features) {
+      feature.keypoint.kind = KeypointKind::kSaddle;
+    }
+  }
+  ExpectEqual(mixed, BruteForce(options, reference, query));
+}
+
 // Every third feature is the same keypoint seen from another direction.
 FeatureSet WithSecondOrientations(FeatureSet set) {
   for (size_t k = 1; k < set.features.size(); k += 3) {

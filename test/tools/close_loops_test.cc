@@ -205,6 +205,97 @@ TEST_F(CloseLoopsTest, MatchesByEitherMethod) {
   }
 }
 
+TEST_F(CloseLoopsTest, SimulatesAsLargeAsAsked) {
+  const auto simulate = [](const std::vector<std::string>& flags) {
+    std::vector<std::string> arguments = {"simulate", "--output",
+                                          File("short.pbstream"), "--truth",
+                                          File("short.csv")};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    return RunTestProgram(arguments);
+  };
+  const ProgramResult result =
+      simulate({"--length", "60", "--plan_width", "60", "--plan_height", "50"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const auto map = ReadMap(File("short.pbstream"));
+  const auto longer = ReadMap(File("open.pbstream"));
+  ASSERT_TRUE(map.ok() && longer.ok());
+  // 60 m of 360 m, at a submap every 12 m or so.
+  EXPECT_GE(map->submaps.size(), 2u);
+  EXPECT_LT(3 * map->submaps.size(), longer->submaps.size());
+  EXPECT_THAT(simulate({"--plan_width", "5"}).error, HasSubstr("width"));
+  EXPECT_THAT(simulate({"--length", "-1"}).error, HasSubstr("length"));
+}
+
+// Of one map, and of two of one building whose ids are the same.
+TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
+  ASSERT_EQ(RunTestProgram({"simulate", "--output", File("second.pbstream"),
+                            "--truth", File("second.csv"), "--seed", "2"})
+                .exit_code,
+            0);
+  for (const bool two_maps : {false, true}) {
+    std::vector<std::string> arguments = {"match", "--input",
+                                          File("open.pbstream")};
+    if (two_maps) {
+      arguments.insert(arguments.end(), {"--query", File("second.pbstream")});
+    }
+    const auto match = [&arguments](const std::string& output,
+                                    const std::vector<std::string>& more) {
+      std::vector<std::string> all = arguments;
+      all.insert(all.end(), {"--output", File(output)});
+      all.insert(all.end(), more.begin(), more.end());
+      const ProgramResult result = RunTestProgram(all);
+      EXPECT_EQ(result.exit_code, 0) << result.error;
+      return *ReadMatches(File(output));
+    };
+    // A threshold that lets wrong ones through.
+    directory_->Write("lax.lua",
+                      "include \"sdf_global_constraints.lua\"\n"
+                      "local v = SDF_GLOBAL_CONSTRAINTS.loop_closing.match."
+                      "verification\n"
+                      "v.min_score = -1.\n"
+                      "v.min_margin = 0.\n"
+                      "return SDF_GLOBAL_CONSTRAINTS");
+    const std::vector<std::string> lax = {
+        "--configuration_directory", directory_->path(),
+        "--configuration_basename", "lax.lua"};
+    const std::vector<MatchRow> alone = match("alone.csv", lax);
+    std::vector<std::string> agree = lax;
+    agree.insert(agree.end(), {"--agree", "--terms", File("terms.csv")});
+    const std::vector<MatchRow> agreeing = match("agreeing.csv", agree);
+    ASSERT_EQ(alone.size(), agreeing.size());
+    int num_refused = 0;
+    int num_accepted = 0;
+    for (size_t k = 0; k != alone.size(); ++k) {
+      EXPECT_EQ(alone[k].score, agreeing[k].score);
+      num_accepted += agreeing[k].accepted;
+      if (alone[k].accepted == agreeing[k].accepted) {
+        EXPECT_EQ(alone[k].verdict, agreeing[k].verdict);
+        continue;
+      }
+      EXPECT_TRUE(alone[k].accepted);
+      EXPECT_THAT(agreeing[k].verdict,
+                  ::testing::AnyOf("unsupported", "contradicted_by_others"));
+      ++num_refused;
+    }
+    EXPECT_GT(num_refused, 0);
+    EXPECT_GT(num_accepted, 20);
+    const std::string terms = directory_->Read("terms.csv");
+    EXPECT_EQ(std::count(terms.begin(), terms.end(), '\n'),
+              static_cast<int>(alone.size()) + 1);
+  }
+  for (const std::vector<std::string>& flags :
+       {std::vector<std::string>{"--agree"}, {"--terms", File("t.csv")}}) {
+    std::vector<std::string> arguments = {
+        "match",    "--input",       File("open.pbstream"),
+        "--output", File("not.csv"), "--method",
+        "paper"};
+    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    const ProgramResult result = RunTestProgram(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.error, HasSubstr("need method sdf"));
+  }
+}
+
 TEST_F(CloseLoopsTest, UserMapsRun) {
   for (const std::string name :
        {"user_map_arena", "user_map_odometry", "user_map_two_sessions"}) {

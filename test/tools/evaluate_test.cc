@@ -107,6 +107,12 @@ TEST_F(EvaluateTest, ScoresMatches) {
             HasSubstr("matches,recall_p1,1\n"),
             HasSubstr("matches,threshold,4\n"),
             HasSubstr("matches,wrong,0\n")));
+  const ProgramResult labelled =
+      Run({"--truth", truth_, "--matches", matches, "--labels",
+           directory_.File("labels.csv")});
+  EXPECT_EQ(labelled.exit_code, 0) << labelled.error;
+  EXPECT_THAT(directory_.Read("labels.csv"),
+              HasSubstr("\n5,0,5,9,1.000000,1,right,0.000000,0.000000\n"));
   // Against itself as a second map, all four pairs are equal.
   const ProgramResult both =
       Run({"--truth", truth_, "--matches", matches, "--query", map_,
@@ -121,6 +127,8 @@ TEST_F(EvaluateTest, RefusesFlagsThatDoNotGoTogether) {
   ExpectFailure({}, 2, "needs --relations or --truth");
   ExpectFailure({"--relations", "x", "--matches", "y"}, 2,
                 "--matches needs --truth");
+  ExpectFailure({"--truth", truth_, "--labels", "y"}, 2,
+                "--labels needs --matches");
   ExpectFailure({"--truth", truth_, "--query", map_}, 2, "need each other");
   ExpectFailure({"--truth", truth_, "--query", map_, "--query_truth", truth_},
                 2, "--query needs --matches");

@@ -76,6 +76,18 @@ TEST(AgreementTest, UncertainFreeSpaceContradictsLess) {
   EXPECT_NEAR(agreement.contradictions, 0.2, 1e-6);
 }
 
+TEST(AgreementTest, CertaintyCanBeIgnored) {
+  AgreementOptions options;
+  options.weigh_by_certainty = false;
+  const DirectedAgreement agreement = MeasureAgreement(
+      options, WallAtTheBeginningOfARow(),
+      {PointInCell(0, 0.5), PointInCell(25, 0.25), PointInCell(15)}, Rigid2(),
+      kAll);
+  EXPECT_EQ(agreement.num_points, 3.);
+  EXPECT_EQ(agreement.hits, 1.);
+  EXPECT_EQ(agreement.contradictions, 2.);
+}
+
 TEST(AgreementTest, UnknownSaysNothing) {
   // Unknown, in the padding, and outside of the grid on either side.
   const DirectedAgreement agreement = Measure(
