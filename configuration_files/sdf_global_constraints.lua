@@ -72,9 +72,9 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- Poses that many pairs of correspondences vote for.
       hypotheses = {
         -- Larger: more recall, slower.
-        max_num_hypotheses = 60,
+        max_num_hypotheses = 80,
         -- The best ones that are paired. Time grows with the square.
-        max_num_correspondences = 700,
+        max_num_correspondences = 400,
         -- [m] Tolerance of the distance between two keypoints.
         max_length_difference_meters = 0.2,
         -- [rad] Tolerance of the keypoints' orientations.
@@ -90,9 +90,9 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- on more.
         ranking = {
           num_coarse_points = 40,
-          num_fine_points = 150,
-          num_coarse_survivors = 15,
-          num_refined = 5,
+          num_fine_points = 200,
+          num_coarse_survivors = 25,
+          num_refined = 8,
           -- [m] Walls this near to each other agree.
           hit_distance_meters = 0.3,
           -- [m] Walls this deep in the other's free space contradict.
@@ -101,11 +101,11 @@ SDF_GLOBAL_CONSTRAINTS = {
           contradiction_weight = 2.,
           -- (hits - weight * contradictions) / points. Larger: faster, less
           -- recall.
-          min_coarse_score = 0.3,
-          min_fine_score = 0.55,
+          min_coarse_score = 0.2,
+          min_fine_score = 0.45,
           -- Hypotheses worse than the best by more are not refined. Larger:
           -- slower, more rivals are noticed.
-          max_fine_score_gap = 0.15,
+          max_fine_score_gap = 0.25,
         },
         -- Refinement of a pose on the distance fields.
         registration = {
@@ -125,18 +125,21 @@ SDF_GLOBAL_CONSTRAINTS = {
           weigh_by_certainty = true,
         },
         -- Wall points of each submap for it.
-        num_agreement_points = 1000,
+        num_agreement_points = 2000,
         -- Score = log-odds of being right. Learned on Intel, ACES, Killian
         -- Court and Willow Garage; see docs/design.md.
         score_weights = {
-          mean_hit_ratio = 7.8,
-          mean_contradiction_ratio = -91.,
-          max_contradiction_ratio = -15.,
-          log_overlap_area = 0.76,
-          log_overlap = 2.5,
-          sqrt_scatter_eigenvalue = 20.,
-          margin = 18.,
-          bias = -18.5,
+          -- Of the fraction of wall points in the other's free space.
+          contradiction_ratio = -95.,
+          -- Of ln(0.05 + fraction of the smaller area that both saw).
+          log_overlap = 2.6,
+          -- Of the number of places, squares of 2 m, whose walls agree.
+          wall_evidence = 0.8,
+          -- Of how evenly the walls face all ways.
+          sqrt_scatter_eigenvalue = 15.,
+          -- Of the lead over the best distinct pose.
+          margin = 0.9,
+          bias = -7.,
         },
         -- [m^2] Least area seen by both.
         min_overlap_area = 10.,
@@ -148,7 +151,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         min_score = 3.,
         -- A pair with a second pose that is nearly as good is ambiguous. Larger:
         -- more pairs are.
-        min_margin = 0.05,
+        min_margin = 0.7,
       },
       -- [m] Keypoints this near under the final pose are reported as inliers.
       inlier_distance_meters = 0.3,

@@ -82,8 +82,8 @@ VARIANTS = [
             "verification.agreement.weigh_by_certainty = false", (), False),
     Variant("no_rivals", "the next best pose does not matter",
             'drop("margin")\nverification.min_margin = 0.', (), False),
-    Variant("hit_ratio_as_score", "the score is the mean hit ratio",
-            'keep("mean_hit_ratio")', (), False),
+    Variant("wall_evidence_as_score", "the score is the walls' evidence alone",
+            'keep("wall_evidence")', (), False),
     Variant("agree", "and accepted matches must agree with each other", "",
             ("--agree",)),
 ]

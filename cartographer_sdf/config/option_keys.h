@@ -106,11 +106,9 @@ void VisitOptions(Visitor& visit, AgreementOptions& options) {
 
 template <typename Visitor>
 void VisitOptions(Visitor& visit, ScoreWeights& options) {
-  visit("mean_hit_ratio", options.mean_hit_ratio);
-  visit("mean_contradiction_ratio", options.mean_contradiction_ratio);
-  visit("max_contradiction_ratio", options.max_contradiction_ratio);
-  visit("log_overlap_area", options.log_overlap_area);
+  visit("contradiction_ratio", options.contradiction_ratio);
   visit("log_overlap", options.log_overlap);
+  visit("wall_evidence", options.wall_evidence);
   visit("sqrt_scatter_eigenvalue", options.sqrt_scatter_eigenvalue);
   visit("margin", options.margin);
   visit("bias", options.bias);

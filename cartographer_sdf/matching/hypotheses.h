@@ -21,10 +21,10 @@ namespace cartographer_sdf {
 
 struct HypothesisOptions {
   // Most hypotheses that come out. Larger: more recall, more time.
-  int max_num_hypotheses = 60;
+  int max_num_hypotheses = 80;
   // Of the correspondences, as many of the least descriptor distance are
   // paired. Time grows with the square.
-  int max_num_correspondences = 700;
+  int max_num_correspondences = 400;
   // Two correspondences agree when the distances between their keypoints differ
   // by less [m] ...
   double max_length_difference_meters = 0.2;

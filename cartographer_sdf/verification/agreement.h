@@ -56,6 +56,23 @@ struct DirectedAgreement {
     const std::vector<SurfacePoint>& points, const Rigid2& T_model_points,
     size_t max_num_points);
 
+// Wall points crowd: a long wall, or a cupboard scanned from near, is many
+// points and yet one fact. On squares of 2 m each place counts once.
+struct TileAgreement {
+  // Squares that hold wall of one submap within what the other has observed;
+  // those that hold less than some 0.4 m of it in part.
+  double num_tiles = 0.;
+  // Mean of the squares' hit ratios.
+  double mean_hit_ratio = 0.;
+};
+
+// By the wall points of both submaps, at most `max_num_points` of each. Squares
+// are those of the reference frame.
+[[nodiscard]] TileAgreement MeasureTileAgreement(
+    const AgreementOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const Rigid2& T_reference_query,
+    size_t max_num_points);
+
 // Area observed by both [m^2], by a sample of the query's observed points.
 [[nodiscard]] double OverlapArea(const SurfaceModel& reference,
                                  const SurfaceModel& query,

@@ -18,10 +18,10 @@ namespace cartographer_sdf {
 // Coarse to fine: all hypotheses on few points, the survivors on more.
 struct RankingOptions {
   int num_coarse_points = 40;
-  int num_fine_points = 150;
+  int num_fine_points = 200;
   // Hypotheses that reach the fine ranking, and those that are refined.
-  int num_coarse_survivors = 15;
-  int num_refined = 5;
+  int num_coarse_survivors = 25;
+  int num_refined = 8;
   // The tolerance of both: hypotheses are this wrong [m].
   double hit_distance_meters = 0.3;
   double contradiction_distance_meters = 0.5;
@@ -29,11 +29,11 @@ struct RankingOptions {
   double contradiction_weight = 2.;
   // A hypothesis with a lower (hits - weight * contradictions) / points is
   // dropped. Larger: faster, less recall.
-  double min_coarse_score = 0.3;
-  double min_fine_score = 0.55;
+  double min_coarse_score = 0.2;
+  double min_fine_score = 0.45;
   // Hypotheses that score worse than the best one by more than this are not
   // refined: they can be neither right nor rivals.
-  double max_fine_score_gap = 0.15;
+  double max_fine_score_gap = 0.25;
 };
 [[nodiscard]] std::string Validate(const RankingOptions& options);
 

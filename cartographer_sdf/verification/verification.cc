@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/verification/verification.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -19,6 +20,9 @@ constexpr double kDistinctRotation = 0.35;
 // More would only cost time: the best ones make the closest rivals.
 constexpr size_t kMaxNumSelfSimilarPoses = 3;
 
+// Along a corridor the pose may as well be off by these [m].
+constexpr double kSlides[] = {-3., -1.5, 1.5, 3.};
+
 // Standard deviation of a wall point's distance, by the grid and by local SLAM
 // [m].
 constexpr double kResidualSigma = 0.05;
@@ -29,11 +33,9 @@ struct ScoreTerm {
   double ScoreWeights::*weight;
 };
 constexpr std::array<ScoreTerm, kNumScoreTerms> kScoreTerms = {
-    {{"mean_hit_ratio", &ScoreWeights::mean_hit_ratio},
-     {"mean_contradiction_ratio", &ScoreWeights::mean_contradiction_ratio},
-     {"max_contradiction_ratio", &ScoreWeights::max_contradiction_ratio},
-     {"log_overlap_area", &ScoreWeights::log_overlap_area},
+    {{"contradiction_ratio", &ScoreWeights::contradiction_ratio},
      {"log_overlap", &ScoreWeights::log_overlap},
+     {"wall_evidence", &ScoreWeights::wall_evidence},
      {"sqrt_scatter_eigenvalue", &ScoreWeights::sqrt_scatter_eigenvalue},
      {"margin", &ScoreWeights::margin}}};
 
@@ -66,6 +68,7 @@ Verdict Judge(const VerificationOptions& options,
 struct Candidate {
   Registration registration;
   Agreement agreement;
+  double score;  // without the margin
 };
 
 std::optional<Candidate> Refine(const VerificationOptions& options,
@@ -83,6 +86,9 @@ std::optional<Candidate> Refine(const VerificationOptions& options,
   agreement.reference_in_query = MeasureAgreement(
       options.agreement, query, reference, T_reference_query.Inverse(),
       options.num_agreement_points);
+  agreement.tiles =
+      MeasureTileAgreement(options.agreement, reference, query,
+                           T_reference_query, options.num_agreement_points);
   agreement.overlap_area = OverlapArea(reference, query, T_reference_query);
   const double smaller_area =
       std::min(static_cast<double>(reference.observed_points.size()) *
@@ -91,7 +97,8 @@ std::optional<Candidate> Refine(const VerificationOptions& options,
                    query.area_per_observed_point);
   agreement.overlap = std::min(1., agreement.overlap_area / smaller_area);
   agreement.min_scatter_eigenvalue = registration->min_scatter_eigenvalue;
-  return Candidate{*std::move(registration), agreement};
+  return Candidate{*std::move(registration), agreement,
+                   Score(options.score_weights, agreement, 0.)};
 }
 
 bool IsDistinct(const Rigid2& a, const Rigid2& b,
@@ -114,17 +121,56 @@ std::vector<Candidate> RefineBest(const VerificationOptions& options,
   // Stable: of equal ones the first.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) {
-                     return a.agreement.Quality() > b.agreement.Quality();
+                     return a.score > b.score;
                    });
   return candidates;
 }
 
-// Where else the query may lie, if one of the submaps resembles itself.
-std::vector<Candidate> SelfSimilarRivals(const VerificationOptions& options,
-                                         const SurfaceModel& reference,
-                                         const SurfaceModel& query,
-                                         const Rigid2& T_reference_query) {
-  std::vector<Rigid2> guesses;
+Eigen::Vector2d MiddleOfOverlap(const SurfaceModel& reference,
+                                const SurfaceModel& query,
+                                const Rigid2& T_reference_query) {
+  const Rigid2 T_grid_query =
+      reference.geometry.T_submap_grid.Inverse() * T_reference_query;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (const Eigen::Vector2d& point : query.observed_points) {
+    const Eigen::Array2d cell =
+        (T_grid_query * point).array() / reference.geometry.resolution;
+    if ((cell < 0.).any() ||
+        (cell >= reference.geometry.size.cast<double>()).any() ||
+        !reference
+             .cells(static_cast<Eigen::Index>(cell.x()),
+                    static_cast<Eigen::Index>(cell.y()))
+             .observed) {
+      continue;
+    }
+    sum += point;
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector2d(sum / count) : Middle(query);
+}
+
+// Where else the query may lie: turned by half a turn, shifted along the walls,
+// or where one of the submaps resembles itself.
+std::vector<Candidate> Rivals(const VerificationOptions& options,
+                              const SurfaceModel& reference,
+                              const SurfaceModel& query,
+                              const Registration& best) {
+  const Rigid2& T_reference_query = best.T_reference_query;
+  const Eigen::Vector2d middle =
+      MiddleOfOverlap(reference, query, T_reference_query);
+  std::vector<Rigid2> guesses = {
+      T_reference_query * Rigid2(2. * middle, M_PI)};
+  // The direction in which the walls hold the pose least.
+  const Eigen::Vector2d along =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+          best.normal_matrix.topLeftCorner<2, 2>())
+          .eigenvectors()
+          .col(0);
+  for (const double slide : kSlides) {
+    guesses.emplace_back(T_reference_query.translation() + slide * along,
+                         T_reference_query.rotation());
+  }
   for (const Rigid2& similar : reference.self_similar_poses) {
     guesses.push_back(similar * T_reference_query);
     guesses.push_back(similar.Inverse() * T_reference_query);
@@ -147,8 +193,7 @@ double MarginOf(const std::vector<Candidate>& candidates, const Candidate& best,
   for (const Candidate& rival : candidates) {
     if (IsDistinct(rival.registration.T_reference_query,
                    best.registration.T_reference_query, middle)) {
-      margin = std::min(margin,
-                        best.agreement.Quality() - rival.agreement.Quality());
+      margin = std::min(margin, best.score - rival.score);
     }
   }
   return std::max(margin, 0.);
@@ -202,12 +247,12 @@ std::string Validate(const VerificationOptions& options) {
   return "";
 }
 
-double Agreement::Quality() const {
-  constexpr double kPerLogArea = 0.07;
-  return 0.5 * (query_in_reference.HitRatio() + reference_in_query.HitRatio()) -
-         query_in_reference.ContradictionRatio() -
-         reference_in_query.ContradictionRatio() +
-         kPerLogArea * std::log(1. + overlap_area);
+double Agreement::WallEvidence() const {
+  // Chance finds poses under which about three of four walls agree.
+  constexpr double kHitRatioByChance = 0.75;
+  constexpr double kExponent = 0.75;
+  return std::pow(tiles.num_tiles, kExponent) *
+         (tiles.mean_hit_ratio - kHitRatioByChance);
 }
 
 std::array<const char*, kNumScoreTerms> ScoreTermNames() {
@@ -218,15 +263,10 @@ std::array<const char*, kNumScoreTerms> ScoreTermNames() {
 
 std::array<double, kNumScoreTerms> ScoreTerms(const Agreement& agreement,
                                               const double margin) {
-  const DirectedAgreement& a = agreement.query_in_reference;
-  const DirectedAgreement& b = agreement.reference_in_query;
-  return {0.5 * (a.HitRatio() + b.HitRatio()),
-          0.5 * (a.ContradictionRatio() + b.ContradictionRatio()),
-          std::max(a.ContradictionRatio(), b.ContradictionRatio()),
-          std::log(1. + agreement.overlap_area),
-          std::log(0.05 + agreement.overlap),
-          std::sqrt(std::max(agreement.min_scatter_eigenvalue, 0.)),
-          margin};
+  return {0.5 * (agreement.query_in_reference.ContradictionRatio() +
+                 agreement.reference_in_query.ContradictionRatio()),
+          std::log(0.05 + agreement.overlap), agreement.WallEvidence(),
+          std::sqrt(std::max(agreement.min_scatter_eigenvalue, 0.)), margin};
 }
 
 double Score(const ScoreWeights& weights, const Agreement& agreement,
@@ -257,18 +297,16 @@ std::optional<Verification> VerifyHypotheses(
   verification.margin = MarginOf(candidates, best, middle);
   verification.score =
       Score(options.score_weights, best.agreement, verification.margin);
-  verification.verdict = Judge(options, verification);
-  if (verification.verdict == Verdict::kAccepted) {
-    // Only now, as few pairs get here.
+  // Only now, as few pairs get here.
+  if (verification.score > 0. || options.min_score <= 0.) {
     verification.margin =
         std::min(verification.margin,
-                 MarginOf(SelfSimilarRivals(options, reference, query,
-                                            verification.T_reference_query),
+                 MarginOf(Rivals(options, reference, query, best.registration),
                           best, middle));
     verification.score =
         Score(options.score_weights, best.agreement, verification.margin);
-    verification.verdict = Judge(options, verification);
   }
+  verification.verdict = Judge(options, verification);
   return verification;
 }
 

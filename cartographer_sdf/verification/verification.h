@@ -34,17 +34,15 @@ enum class Verdict {
 [[nodiscard]] const char* VerdictName(Verdict verdict);
 
 // The score, log-odds of being right, is linear in these terms. The weights are
-// learned by logistic regression on pairs of submaps of several buildings; see
-// docs/design.md.
+// learned by logistic regression on pairs of submaps of several buildings, see
+// scripts/learn_score.py and docs/design.md.
 struct ScoreWeights {
-  double mean_hit_ratio = 7.8;  // of the two directions
-  double mean_contradiction_ratio = -91.;
-  double max_contradiction_ratio = -15.;
-  double log_overlap_area = 0.76;  // ln(1 + m^2)
-  double log_overlap = 2.5;        // ln(0.05 + fraction of the smaller area)
-  double sqrt_scatter_eigenvalue = 20.;
-  double margin = 18.;  // of quality to the best distinct pose, capped
-  double bias = -18.5;
+  double contradiction_ratio = -95.;  // mean of the two directions
+  double log_overlap = 2.6;  // ln(0.05 + fraction of the smaller area)
+  double wall_evidence = 0.8;  // Agreement::WallEvidence
+  double sqrt_scatter_eigenvalue = 15.;
+  double margin = 0.9;  // to the best distinct pose, capped
+  double bias = -7.;
 };
 [[nodiscard]] std::string Validate(const ScoreWeights& weights);
 
@@ -53,7 +51,7 @@ struct VerificationOptions {
   RegistrationOptions registration;
   AgreementOptions agreement;
   // Wall points of each submap on which the final agreement is measured.
-  int num_agreement_points = 1000;
+  int num_agreement_points = 2000;
   ScoreWeights score_weights;
   // Least area seen by both [m^2].
   double min_overlap_area = 10.;
@@ -63,30 +61,33 @@ struct VerificationOptions {
   double min_scatter_eigenvalue = 0.03;
   // Least score; log-odds of being right.
   double min_score = 3.;
-  // A distinct pose (1 m or 20 degrees away) whose quality comes nearer than
-  // this makes the pair ambiguous.
-  double min_margin = 0.05;
+  // A distinct pose (1 m or 20 degrees away) whose score comes nearer than this
+  // makes the pair ambiguous; log-odds.
+  double min_margin = 0.7;
 };
 [[nodiscard]] std::string Validate(const VerificationOptions& options);
 
 struct Agreement {
   DirectedAgreement query_in_reference;
   DirectedAgreement reference_in_query;
+  TileAgreement tiles;
   double overlap_area = 0.;  // [m^2]
   double overlap = 0.;       // of the smaller observed area
   double min_scatter_eigenvalue = 0.;
-  // Mean hit ratio less both contradiction ratios, and a little for a large
-  // overlap: how good a pose is beside others of the same pair.
-  [[nodiscard]] double Quality() const;
+  // How much the walls speak for the pose: grows with the number of places
+  // that agree, and is negative where fewer do than by chance under the best
+  // of wrong poses. Places near each other tell much the same, so that their
+  // number counts by a power below one.
+  [[nodiscard]] double WallEvidence() const;
 };
 
-// By how much a pose is better than the best distinct one; this where there is
-// none, or none near.
-constexpr double kMaxMargin = 0.25;
+// The cap of a pose's margin, of the score without the margin, to the best
+// distinct pose of the same pair; also where there is none.
+constexpr double kMaxMargin = 4.;
 
 // The terms of ScoreWeights without the bias, in their order.
-constexpr int kNumScoreTerms = 7;
-// As the fields of ScoreWeights are called.
+constexpr int kNumScoreTerms = 5;
+// The names of their weights.
 [[nodiscard]] std::array<const char*, kNumScoreTerms> ScoreTermNames();
 [[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
     const Agreement& agreement, double margin);
@@ -100,13 +101,14 @@ struct Verification {
   Eigen::Matrix3d information;
   double score;  // log-odds of being right
   Agreement agreement;
-  // Of quality, to the best distinct pose; in [0, kMaxMargin].
+  // To the best distinct pose; in [0, kMaxMargin].
   double margin;
 };
 
 // None where no hypothesis is worth refining. Independent of the order of the
-// hypotheses. Rivals of the best pose are the other hypotheses and what it
-// becomes by self-similar poses of either submap.
+// hypotheses. Rivals of the best pose are the other hypotheses and, where it is
+// more likely right than wrong, its half turn, its shifts along the walls, and
+// what it becomes by self-similar poses of either submap.
 [[nodiscard]] std::optional<Verification> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,

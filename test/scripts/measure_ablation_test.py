@@ -55,15 +55,15 @@ class MeasureAblationTest(unittest.TestCase):
 
     def test_reports_ratios_of_time_and_no_counts_that_do_not_compare(self):
         variants = [v for v in measure_ablation.VARIANTS
-                    if v.name in ("shipped", "hit_ratio_as_score")]
+                    if v.name in ("shipped", "wall_evidence_as_score")]
         numbers = {"recall_p1": 0.5, "recall_p99": 0.75,
                    "accepted_recall": 0.25, "accepted_wrong": 7, "cpu": 2.}
         text = measure_ablation.report(
             ["aces"], variants,
             {("aces", "shipped"): numbers,
-             ("aces", "hit_ratio_as_score"): {**numbers, "cpu": 5.}}, 2)
+             ("aces", "wall_evidence_as_score"): {**numbers, "cpu": 5.}}, 2)
         rows = [line for line in text.splitlines()
-                if line.startswith("| hit_ratio_as_score | ")]
+                if line.startswith("| wall_evidence_as_score | ")]
         self.assertEqual([row.split(" | ")[1].rstrip(" |") for row in rows[1:]],
                          ["0.500", "0.750", "-", "-", "2.50"])
         self.assertIn("| shipped | 7 |", text)
