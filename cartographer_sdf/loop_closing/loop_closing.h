@@ -30,6 +30,9 @@ struct LoopClosingOptions {
   // Submaps of one trajectory are matched from this difference of their
   // indices on; nearer ones share scans.
   int min_index_gap = 3;
+  // Whether only those pairs are matched that an index proposes; else all.
+  bool use_retrieval = false;
+  RetrievalOptions retrieval;
   ConsistencyOptions consistency;
   LiftingOptions lifting;
   OptimizationOptions optimization;

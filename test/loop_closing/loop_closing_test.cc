@@ -3,8 +3,10 @@
 
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,14 +97,40 @@ TEST(MatchWithinTest, LeavesNeighboursOut) {
     return result;
   };
   using Pair = std::pair<SubmapId, SubmapId>;
-  EXPECT_THAT(pairs(MatchWithin(MatchOptions(), places, 3, Threads(2))),
-              ElementsAre(Pair({0, 0}, {0, 3}), Pair({0, 0}, {1, 1}),
-                          Pair({0, 2}, {1, 1}), Pair({0, 3}, {1, 1})));
-  EXPECT_EQ(MatchWithin(MatchOptions(), places, 1, Threads(2)).size(), 6u);
   const std::map<SubmapId, Place> queries = {*places.find({1, 1})};
-  EXPECT_THAT(pairs(MatchBetween(MatchOptions(), places, queries, Threads(2))),
-              ElementsAre(Pair({0, 0}, {1, 1}), Pair({0, 2}, {1, 1}),
-                          Pair({0, 3}, {1, 1}), Pair({1, 1}, {1, 1})));
+  // With few places, retrieval proposes all of them.
+  for (const auto& retrieval : {std::optional<RetrievalOptions>(),
+                                std::make_optional(RetrievalOptions())}) {
+    EXPECT_THAT(
+        pairs(MatchWithin(MatchOptions(), retrieval, places, 3, Threads(2))),
+        ElementsAre(Pair({0, 0}, {0, 3}), Pair({0, 0}, {1, 1}),
+                    Pair({0, 2}, {1, 1}), Pair({0, 3}, {1, 1})));
+    EXPECT_EQ(
+        MatchWithin(MatchOptions(), retrieval, places, 1, Threads(2)).size(),
+        6u);
+    EXPECT_THAT(pairs(MatchBetween(MatchOptions(), retrieval, places, queries,
+                                   Threads(2))),
+                ElementsAre(Pair({0, 0}, {1, 1}), Pair({0, 2}, {1, 1}),
+                            Pair({0, 3}, {1, 1}), Pair({1, 1}, {1, 1})));
+  }
+  // One each; either may propose.
+  RetrievalOptions one;
+  one.min_num_candidates = one.max_num_candidates = 1;
+  const std::vector<Pair> all =
+      pairs(MatchWithin(MatchOptions(), std::nullopt, places, 3, Threads(2)));
+  for (const int num_threads : {1, 3}) {
+    const std::vector<Pair> some = pairs(
+        MatchWithin(MatchOptions(), one, places, 3, Threads(num_threads)));
+    EXPECT_GE(some.size(), 2u);
+    EXPECT_LT(some.size(), all.size());
+    for (const Pair& pair : some) EXPECT_THAT(all, ::testing::Contains(pair));
+    // Every place has its one.
+    for (const auto& [id, place] : places) {
+      EXPECT_TRUE(std::any_of(some.begin(), some.end(), [&](const Pair& pair) {
+        return pair.first == id || pair.second == id;
+      })) << id;
+    }
+  }
 }
 
 // A drive through an invented office, and its loops closed.
