@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "cartographer_sdf/place_store/place_file.h"
+
 namespace cartographer_sdf {
 namespace {
 
@@ -133,6 +135,38 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
   describer.Flush();
   map.state = *std::move(state);
   return map;
+}
+
+absl::StatusOr<RememberedMap> RememberMap(const PlaceOptions& place_options,
+                                          const MatchOptions& match_options,
+                                          const std::string& options_text,
+                                          const std::string& path,
+                                          const std::string& places_path,
+                                          const Executor& executor,
+                                          const ProgressCallback& on_progress) {
+  const absl::StatusOr<PlaceFileKey> key = MakePlaceFileKey(path, options_text);
+  if (!key.ok()) return key.status();
+  RememberedMap remembered;
+  absl::StatusOr<std::map<SubmapId, Place>> places =
+      ReadPlaces(places_path, *key);
+  if (places.ok()) {
+    absl::StatusOr<MapState> state = ReadMap(path, {}, on_progress);
+    if (!state.ok()) return state.status();
+    remembered.map = {*std::move(state), *std::move(places)};
+    remembered.is_from_file = true;
+    return remembered;
+  }
+  if (!absl::IsNotFound(places.status())) {
+    remembered.complaint = std::string(places.status().message());
+  }
+  absl::StatusOr<DescribedMap> map =
+      DescribeMap(place_options, match_options, path, executor, on_progress);
+  if (!map.ok()) return map.status();
+  remembered.map = *std::move(map);
+  const absl::Status status =
+      WritePlaces(places_path, *key, remembered.map.places);
+  if (!status.ok()) remembered.complaint = std::string(status.message());
+  return remembered;
 }
 
 std::vector<Match> MatchWithin(const MatchOptions& options,

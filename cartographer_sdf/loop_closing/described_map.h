@@ -39,6 +39,24 @@ struct DescribedMap {
     const std::string& path, const Executor& executor,
     const ProgressCallback& on_progress = {});
 
+struct RememberedMap {
+  DescribedMap map;
+  bool is_from_file = false;
+  // Why the file of places could not be used although it was there, or not be
+  // written: a line for the user, who need not do anything. Else empty.
+  std::string complaint;
+};
+
+// As DescribeMap, but takes the places from a file (place_file.h) that an
+// earlier run has left; else describes them and leaves one. `options_text` is
+// all options as text; a file of other options is not used. Fails as
+// DescribeMap does.
+[[nodiscard]] absl::StatusOr<RememberedMap> RememberMap(
+    const PlaceOptions& place_options, const MatchOptions& match_options,
+    const std::string& options_text, const std::string& path,
+    const std::string& places_path, const Executor& executor,
+    const ProgressCallback& on_progress = {});
+
 // Unordered pairs of one map, the lower id as the reference: every pair, or
 // with `retrieval` those in which either submap is a candidate of the other.
 // Submaps of one trajectory whose indices differ by less than `min_index_gap`

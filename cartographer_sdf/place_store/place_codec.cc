@@ -42,6 +42,28 @@ bool FromProto(const proto::place_index::Pose& proto, Rigid2* const pose) {
   return true;
 }
 
+// What the distances of the cells before, along x and along y, let expect of
+// cell k: that the field is a plane.
+uint16_t ExpectedDistance(const SurfaceCell* const cells, const size_t width,
+                          const size_t k) {
+  const auto at = [cells](const size_t index) {
+    return static_cast<int>(cells[index].distance);
+  };
+  const bool has_left = k % width > 0, has_below = k >= width;
+  const int left = has_left ? at(k - 1) : 0;
+  const int below = has_below ? at(k - width) : 0;
+  const int both = has_left && has_below ? at(k - width - 1) : 0;
+  return static_cast<uint16_t>(left + below - both);
+}
+
+// Small numbers of either sign become small numbers.
+uint16_t ZigZag(const uint16_t value) {
+  return static_cast<uint16_t>(value << 1 ^ (value & 0x8000 ? 0xffff : 0));
+}
+uint16_t UnZigZag(const uint16_t value) {
+  return static_cast<uint16_t>(value >> 1 ^ (value & 1 ? 0xffff : 0));
+}
+
 void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
   // Fails to compile where a member is new, and would be lost.
   const auto& [geometry, cells, walls, observed_points, area, poses] = surface;
@@ -55,9 +77,11 @@ void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
   bytes.resize(kBytesPerCell * n);
   for (size_t k = 0; k < n; ++k) {
     const SurfaceCell& cell = cells.data()[k];
-    const uint16_t distance = static_cast<uint16_t>(cell.distance);
-    bytes[k] = static_cast<char>(distance & 0xff);
-    bytes[n + k] = static_cast<char>(distance >> 8);
+    const uint16_t difference = ZigZag(static_cast<uint16_t>(
+        cell.distance -
+        ExpectedDistance(cells.data(), static_cast<size_t>(cells.rows()), k)));
+    bytes[k] = static_cast<char>(difference & 0xff);
+    bytes[n + k] = static_cast<char>(difference >> 8);
     bytes[2 * n + k] = static_cast<char>(cell.free);
     bytes[3 * n + k] = static_cast<char>(cell.observed);
   }
@@ -117,9 +141,13 @@ std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
       return static_cast<uint8_t>(bytes[plane * n + k]);
     };
     if (byte(3) > 1) return "has a cell that is neither observed nor not";
-    surface->cells.data()[k] = {
-        static_cast<int16_t>(static_cast<uint16_t>(byte(0) | byte(1) << 8)),
-        byte(2), byte(3) == 1};
+    const uint16_t difference =
+        UnZigZag(static_cast<uint16_t>(byte(0) | byte(1) << 8));
+    const uint16_t distance = static_cast<uint16_t>(
+        ExpectedDistance(surface->cells.data(), static_cast<size_t>(width), k) +
+        difference);
+    surface->cells.data()[k] = {static_cast<int16_t>(distance), byte(2),
+                                byte(3) == 1};
   }
   return "";
 }

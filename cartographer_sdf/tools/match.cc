@@ -3,6 +3,7 @@
 
 #include <iostream>
 #include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/evaluation/match_table.h"
@@ -19,6 +20,11 @@ DEFINE_string(method, "",
 DEFINE_bool(retrieval, false,
             "Match only those pairs of submaps that an index of all features "
             "proposes: much faster on large maps, at the price of some pairs.");
+
+DEFINE_string(places, "",
+              "A file beside --input that holds what its submaps look like: "
+              "read instead of describing them again, made where there is none "
+              "or where it is of another map or other options.");
 
 namespace cartographer_sdf {
 namespace {
@@ -42,6 +48,26 @@ absl::StatusOr<Options> LoadOptionsOfMethod() {
   return options;
 }
 
+// A file of places is bound to all options: more than they depend on, but never
+// too few.
+absl::StatusOr<DescribedMap> DescribeInput(
+    const Options& options, const Executor& executor,
+    const ProgressCallback& on_progress) {
+  const LoopClosingOptions& stages = options.loop_closing;
+  if (FLAGS_places.empty()) {
+    return DescribeMap(stages.place, stages.match, FLAGS_input, executor,
+                       on_progress);
+  }
+  absl::StatusOr<RememberedMap> remembered =
+      RememberMap(stages.place, stages.match, FormatOptions(options),
+                  FLAGS_input, FLAGS_places, executor, on_progress);
+  if (!remembered.ok()) return remembered.status();
+  if (!remembered->complaint.empty()) {
+    std::cerr << "--places: " << remembered->complaint << "\n";
+  }
+  return std::move(remembered->map);
+}
+
 absl::Status RunMatch() {
   const absl::StatusOr<Options> options = LoadOptionsOfMethod();
   if (!options.ok()) return options.status();
@@ -53,8 +79,7 @@ absl::Status RunMatch() {
       FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
   const absl::StatusOr<DescribedMap> map =
-      DescribeMap(stages.place, stages.match, FLAGS_input, executor,
-                  progress.Begin("read and describe"));
+      DescribeInput(*options, executor, progress.Begin("read and describe"));
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   if (FLAGS_query.empty()) {
@@ -92,7 +117,7 @@ Subcommand MatchSubcommand() {
       "match",
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
-      "[--method sdf|paper] [--retrieval]",
+      "[--method sdf|paper] [--retrieval] [--places P.places]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
       "evidence. Nothing is optimised.\n\n"
@@ -100,7 +125,7 @@ Subcommand MatchSubcommand() {
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
       "log-odds of being right; paper: number of inliers).",
       {"input", "output"},
-      {"query", "method", "retrieval", "configuration_directory",
+      {"query", "method", "retrieval", "places", "configuration_directory",
        "configuration_basename", "threads"},
       &RunMatch};
 }

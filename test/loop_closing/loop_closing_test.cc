@@ -173,6 +173,55 @@ testing::TemporaryDirectory* SimulatedOfficeTest::directory_;
 Truth* SimulatedOfficeTest::truth_;
 LoopClosingResult* SimulatedOfficeTest::result_;
 
+TEST_F(SimulatedOfficeTest, RemembersPlacesFromAFile) {
+  testing::TemporaryDirectory directory;
+  const std::string file = directory.File("places");
+  const auto remember = [&file](const std::string& options_text) {
+    auto remembered = RememberMap(PlaceOptions(), MatchOptions(), options_text,
+                                  MapPath(), file, Threads(2));
+    CHECK(remembered.ok()) << remembered.status();
+    return *std::move(remembered);
+  };
+  const RememberedMap first = remember("options");
+  EXPECT_FALSE(first.is_from_file);
+  EXPECT_EQ(first.complaint, "");
+  const RememberedMap second = remember("options");
+  EXPECT_TRUE(second.is_from_file);
+  EXPECT_EQ(second.complaint, "");
+  EXPECT_EQ(second.map.state.submaps.size(), first.map.state.submaps.size());
+  EXPECT_EQ(second.map.places.size(), result().num_places);
+  // They match as before.
+  const auto matches = [](const RememberedMap& remembered) {
+    std::vector<double> scores;
+    for (const Match& match :
+         MatchWithin(MatchOptions(), std::nullopt, remembered.map.places, 3,
+                     Threads(2))) {
+      scores.push_back(match.closure.score);
+    }
+    return scores;
+  };
+  EXPECT_EQ(matches(first), matches(second));
+  // Of other options, or broken: described and written again.
+  const RememberedMap other = remember("other options");
+  EXPECT_FALSE(other.is_from_file);
+  EXPECT_THAT(other.complaint, ::testing::HasSubstr("other options"));
+  directory.Write("places", "nonsense");
+  const RememberedMap broken = remember("other options");
+  EXPECT_FALSE(broken.is_from_file);
+  EXPECT_THAT(broken.complaint, ::testing::HasSubstr(file));
+  EXPECT_EQ(broken.map.places.size(), first.map.places.size());
+  EXPECT_TRUE(remember("other options").is_from_file);
+}
+
+TEST_F(SimulatedOfficeTest, RetrievalKeepsTheClosures) {
+  LoopClosingOptions options;
+  options.use_retrieval = true;
+  const auto retrieved = CloseLoops(options, MapPath(), {}, Threads(4));
+  ASSERT_TRUE(retrieved.ok()) << retrieved.status();
+  EXPECT_LE(retrieved->num_matches, result().num_matches);
+  EXPECT_GE(10 * retrieved->closures.size(), 9 * result().closures.size());
+}
+
 TEST_F(SimulatedOfficeTest, ClosuresAreRight) {
   int num_in_graph = 0;
   for (const ClosureOutcome& outcome : result().closures) {
