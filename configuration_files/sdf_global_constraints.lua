@@ -169,6 +169,35 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Submaps of one trajectory are matched from this difference of their
     -- indices on; nearer ones share scans.
     min_index_gap = 3,
+    -- Whether only those pairs are matched that an index of all features
+    -- proposes. false: every pair, the time of which grows with the square of
+    -- the number of submaps. `match` has the flag --retrieval instead.
+    use_retrieval = false,
+    retrieval = {
+      -- Per feature, nearest of the whole map. Larger: more recall, slower.
+      num_neighbours = 100,
+      -- [m] Features whose distance to walls differs by more are none.
+      max_clearance_difference_meters = 0.2,
+      -- Poses that pairs of neighbours in one submap vote for; as in
+      -- match.hypotheses.
+      votes = {
+        max_num_correspondences = 250,
+        -- [m], [rad]
+        max_length_difference_meters = 0.25,
+        max_orientation_difference = 0.35,
+        min_baseline_meters = 1.,
+        -- [m], [rad] Pitch of the raster that gathers the votes.
+        bin_distance_meters = 0.75,
+        bin_rotation = 0.2,
+      },
+      -- Submaps with a lower score are not matched. Larger: faster, less recall.
+      min_score = 0.04,
+      -- But so many always are, and never more.
+      min_num_candidates = 10,
+      max_num_candidates = 200,
+      -- Poses that come with each.
+      max_num_hypotheses = 3,
+    },
     -- Whether closures of submaps that local SLAM tore, so that walls stand in
     -- them twice, say nothing of others and need the support of others. Reads
     -- all scans of the map.

@@ -158,6 +158,28 @@ void VisitOptions(Visitor& visit, TearOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, PoseVoteOptions& options) {
+  visit("max_num_correspondences", options.max_num_correspondences);
+  visit("max_length_difference_meters", options.max_length_difference_meters);
+  visit("max_orientation_difference", options.max_orientation_difference);
+  visit("min_baseline_meters", options.min_baseline_meters);
+  visit("bin_distance_meters", options.bin_distance_meters);
+  visit("bin_rotation", options.bin_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RetrievalOptions& options) {
+  visit("num_neighbours", options.num_neighbours);
+  visit("max_clearance_difference_meters",
+        options.max_clearance_difference_meters);
+  visit("votes", options.votes);
+  visit("min_score", options.min_score);
+  visit("min_num_candidates", options.min_num_candidates);
+  visit("max_num_candidates", options.max_num_candidates);
+  visit("max_num_hypotheses", options.max_num_hypotheses);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
   visit("rotation_sigma_per_sqrt_meter", options.rotation_sigma_per_sqrt_meter);
   visit("translation_sigma_per_meter", options.translation_sigma_per_meter);
@@ -205,6 +227,8 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
   visit("place", options.place);
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
+  visit("use_retrieval", options.use_retrieval);
+  visit("retrieval", options.retrieval);
   visit("silence_torn_submaps", options.silence_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);

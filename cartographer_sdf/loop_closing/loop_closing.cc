@@ -138,9 +138,9 @@ OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.place), Validate(options.match),
-        Validate(options.tear), Validate(options.consistency),
-        Validate(options.lifting), Validate(options.optimization),
-        Validate(options.withdrawal)}) {
+        Validate(options.retrieval), Validate(options.tear),
+        Validate(options.consistency), Validate(options.lifting),
+        Validate(options.optimization), Validate(options.withdrawal)}) {
     if (!error.empty()) return error;
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";
@@ -197,7 +197,10 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   result.num_places = map->places.size();
 
   std::vector<Match> matches =
-      MatchWithin(options.match, map->places, options.min_index_gap, executor,
+      MatchWithin(options.match,
+                  options.use_retrieval ? std::make_optional(options.retrieval)
+                                        : std::nullopt,
+                  map->places, options.min_index_gap, executor,
                   clock.Begin("match and verify"));
   result.num_matches = matches.size();
   for (Match& match : matches) {

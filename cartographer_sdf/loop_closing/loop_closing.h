@@ -32,6 +32,9 @@ struct LoopClosingOptions {
   // Submaps of one trajectory are matched from this difference of their
   // indices on; nearer ones share scans.
   int min_index_gap = 3;
+  // Whether only those pairs are matched that an index proposes; else all.
+  bool use_retrieval = false;
+  RetrievalOptions retrieval;
   // Whether submaps that their own scans show to be torn are kept from voting:
   // their closures neither support nor contradict others, and enter the graph
   // only where others support them.

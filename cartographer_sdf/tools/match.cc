@@ -27,6 +27,15 @@ DEFINE_bool(agree, false,
             "Whether accepted matches must agree with each other, as in "
             "close_loops. Only method sdf.");
 
+DEFINE_bool(retrieval, false,
+            "Match only those pairs of submaps that an index of all features "
+            "proposes: much faster on large maps, at the price of some pairs.");
+
+DEFINE_string(places, "",
+              "A file beside --input that holds what its submaps look like: "
+              "read instead of describing them again, made where there is none "
+              "or where it is of another map or other options.");
+
 namespace cartographer_sdf {
 namespace {
 
@@ -72,6 +81,26 @@ void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
   }
 }
 
+// A file of places is bound to all options: more than they depend on, but never
+// too few.
+absl::StatusOr<DescribedMap> DescribeInput(
+    const Options& options, const Executor& executor,
+    const ProgressCallback& on_progress) {
+  const LoopClosingOptions& stages = options.loop_closing;
+  if (FLAGS_places.empty()) {
+    return DescribeMap(stages.place, stages.match, FLAGS_input, executor,
+                       on_progress);
+  }
+  absl::StatusOr<RememberedMap> remembered =
+      RememberMap(stages.place, stages.match, FormatOptions(options),
+                  FLAGS_input, FLAGS_places, executor, on_progress);
+  if (!remembered.ok()) return remembered.status();
+  if (!remembered->complaint.empty()) {
+    std::cerr << "--places: " << remembered->complaint << "\n";
+  }
+  return std::move(remembered->map);
+}
+
 absl::Status RunMatch() {
   const absl::StatusOr<Options> options = LoadOptionsOfMethod();
   if (!options.ok()) return options.status();
@@ -83,23 +112,25 @@ absl::Status RunMatch() {
   if (!num_threads.ok()) return num_threads.status();
   const LoopClosingOptions& stages = options->loop_closing;
   const Executor executor = MakeExecutor(*num_threads);
+  const std::optional<RetrievalOptions> retrieval =
+      FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
   const absl::StatusOr<DescribedMap> map =
-      DescribeMap(stages.place, stages.match, FLAGS_input, executor,
-                  progress.Begin("read and describe"));
+      DescribeInput(*options, executor, progress.Begin("read and describe"));
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   std::optional<MapState> query_state;
   if (FLAGS_query.empty()) {
-    matches = MatchWithin(stages.match, map->places, stages.min_index_gap,
-                          executor, progress.Begin("match and verify"));
+    matches =
+        MatchWithin(stages.match, retrieval, map->places, stages.min_index_gap,
+                    executor, progress.Begin("match and verify"));
   } else {
     absl::StatusOr<DescribedMap> query =
         DescribeMap(stages.place, stages.match, FLAGS_query, executor,
                     progress.Begin("read and describe"));
     if (!query.ok()) return query.status();
-    matches = MatchBetween(stages.match, map->places, query->places, executor,
-                           progress.Begin("match and verify"));
+    matches = MatchBetween(stages.match, retrieval, map->places, query->places,
+                           executor, progress.Begin("match and verify"));
     query_state = std::move(query->state);
   }
   std::vector<MatchRow> rows;
@@ -134,7 +165,7 @@ Subcommand MatchSubcommand() {
       "match",
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
-      "[--method sdf|paper] [--agree]",
+      "[--method sdf|paper] [--retrieval] [--places P.places] [--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
       "evidence. Nothing is optimised.\n\n"
@@ -145,8 +176,8 @@ Subcommand MatchSubcommand() {
       "odometry between them, or that is uncertain and stands alone, is "
       "accepted no more, and its verdict says which.",
       {"input", "output"},
-      {"query", "method", "agree", "terms", "configuration_directory",
-       "configuration_basename", "threads"},
+      {"query", "method", "retrieval", "places", "agree", "terms",
+       "configuration_directory", "configuration_basename", "threads"},
       &RunMatch};
 }
 

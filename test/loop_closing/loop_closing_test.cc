@@ -3,8 +3,10 @@
 
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -95,14 +97,40 @@ TEST(MatchWithinTest, LeavesNeighboursOut) {
     return result;
   };
   using Pair = std::pair<SubmapId, SubmapId>;
-  EXPECT_THAT(pairs(MatchWithin(MatchOptions(), places, 3, Threads(2))),
-              ElementsAre(Pair({0, 0}, {0, 3}), Pair({0, 0}, {1, 1}),
-                          Pair({0, 2}, {1, 1}), Pair({0, 3}, {1, 1})));
-  EXPECT_EQ(MatchWithin(MatchOptions(), places, 1, Threads(2)).size(), 6u);
   const std::map<SubmapId, Place> queries = {*places.find({1, 1})};
-  EXPECT_THAT(pairs(MatchBetween(MatchOptions(), places, queries, Threads(2))),
-              ElementsAre(Pair({0, 0}, {1, 1}), Pair({0, 2}, {1, 1}),
-                          Pair({0, 3}, {1, 1}), Pair({1, 1}, {1, 1})));
+  // With few places, retrieval proposes all of them.
+  for (const auto& retrieval : {std::optional<RetrievalOptions>(),
+                                std::make_optional(RetrievalOptions())}) {
+    EXPECT_THAT(
+        pairs(MatchWithin(MatchOptions(), retrieval, places, 3, Threads(2))),
+        ElementsAre(Pair({0, 0}, {0, 3}), Pair({0, 0}, {1, 1}),
+                    Pair({0, 2}, {1, 1}), Pair({0, 3}, {1, 1})));
+    EXPECT_EQ(
+        MatchWithin(MatchOptions(), retrieval, places, 1, Threads(2)).size(),
+        6u);
+    EXPECT_THAT(pairs(MatchBetween(MatchOptions(), retrieval, places, queries,
+                                   Threads(2))),
+                ElementsAre(Pair({0, 0}, {1, 1}), Pair({0, 2}, {1, 1}),
+                            Pair({0, 3}, {1, 1}), Pair({1, 1}, {1, 1})));
+  }
+  // One each; either may propose.
+  RetrievalOptions one;
+  one.min_num_candidates = one.max_num_candidates = 1;
+  const std::vector<Pair> all =
+      pairs(MatchWithin(MatchOptions(), std::nullopt, places, 3, Threads(2)));
+  for (const int num_threads : {1, 3}) {
+    const std::vector<Pair> some = pairs(
+        MatchWithin(MatchOptions(), one, places, 3, Threads(num_threads)));
+    EXPECT_GE(some.size(), 2u);
+    EXPECT_LT(some.size(), all.size());
+    for (const Pair& pair : some) EXPECT_THAT(all, ::testing::Contains(pair));
+    // Every place has its one.
+    for (const auto& [id, place] : places) {
+      EXPECT_TRUE(std::any_of(some.begin(), some.end(), [&](const Pair& pair) {
+        return pair.first == id || pair.second == id;
+      })) << id;
+    }
+  }
 }
 
 // A drive through an invented office, and its loops closed.
@@ -144,6 +172,55 @@ class SimulatedOfficeTest : public ::testing::Test {
 testing::TemporaryDirectory* SimulatedOfficeTest::directory_;
 Truth* SimulatedOfficeTest::truth_;
 LoopClosingResult* SimulatedOfficeTest::result_;
+
+TEST_F(SimulatedOfficeTest, RemembersPlacesFromAFile) {
+  testing::TemporaryDirectory directory;
+  const std::string file = directory.File("places");
+  const auto remember = [&file](const std::string& options_text) {
+    auto remembered = RememberMap(PlaceOptions(), MatchOptions(), options_text,
+                                  MapPath(), file, Threads(2));
+    CHECK(remembered.ok()) << remembered.status();
+    return *std::move(remembered);
+  };
+  const RememberedMap first = remember("options");
+  EXPECT_FALSE(first.is_from_file);
+  EXPECT_EQ(first.complaint, "");
+  const RememberedMap second = remember("options");
+  EXPECT_TRUE(second.is_from_file);
+  EXPECT_EQ(second.complaint, "");
+  EXPECT_EQ(second.map.state.submaps.size(), first.map.state.submaps.size());
+  EXPECT_EQ(second.map.places.size(), result().num_places);
+  // They match as before.
+  const auto matches = [](const RememberedMap& remembered) {
+    std::vector<double> scores;
+    for (const Match& match :
+         MatchWithin(MatchOptions(), std::nullopt, remembered.map.places, 3,
+                     Threads(2))) {
+      scores.push_back(match.closure.score);
+    }
+    return scores;
+  };
+  EXPECT_EQ(matches(first), matches(second));
+  // Of other options, or broken: described and written again.
+  const RememberedMap other = remember("other options");
+  EXPECT_FALSE(other.is_from_file);
+  EXPECT_THAT(other.complaint, ::testing::HasSubstr("other options"));
+  directory.Write("places", "nonsense");
+  const RememberedMap broken = remember("other options");
+  EXPECT_FALSE(broken.is_from_file);
+  EXPECT_THAT(broken.complaint, ::testing::HasSubstr(file));
+  EXPECT_EQ(broken.map.places.size(), first.map.places.size());
+  EXPECT_TRUE(remember("other options").is_from_file);
+}
+
+TEST_F(SimulatedOfficeTest, RetrievalKeepsTheClosures) {
+  LoopClosingOptions options;
+  options.use_retrieval = true;
+  const auto retrieved = CloseLoops(options, MapPath(), {}, Threads(4));
+  ASSERT_TRUE(retrieved.ok()) << retrieved.status();
+  EXPECT_LE(retrieved->num_matches, result().num_matches);
+  EXPECT_GE(10 * retrieved->closures.size(), 9 * result().closures.size());
+}
 
 TEST_F(SimulatedOfficeTest, ClosuresAreRight) {
   int num_in_graph = 0;

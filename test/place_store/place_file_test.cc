@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/place_store/place_file.h"
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <random>
+
+#include "cartographer_sdf/pbstream/record_stream.h"
+#include "cartographer_sdf/place_index.pb.h"
+#include "cartographer_sdf/place_store/place_codec.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/building.h"
+#include "test/testing/random_number.h"
+#include "test/testing/temporary_directory.h"
+
+namespace cartographer_sdf {
+namespace {
+
+using ::testing::HasSubstr;
+using ProtoPlace = proto::place_index::Place;
+
+Place Room(const SubmapId& id) {
+  Place place = *DescribePlace(
+      PlaceOptions(), id,
+      testing::SeeFrom(testing::TwoRooms(), Rigid2(1., 2., 0.1 * id.index),
+                       testing::WestRoomViewpoints()));
+  place.surface.self_similar_poses = {Rigid2(1., -2., 3.)};
+  return place;
+}
+
+void ExpectSame(const Rigid2& a, const Rigid2& b) {
+  EXPECT_EQ(a.translation(), b.translation());
+  EXPECT_EQ(a.rotation(), b.rotation());
+}
+
+void ExpectSame(const Place& a, const Place& b) {
+  EXPECT_EQ(a.id, b.id);
+  const CellGeometry &g = a.surface.geometry, &h = b.surface.geometry;
+  ASSERT_TRUE((g.size == h.size).all());
+  EXPECT_EQ(g.resolution, h.resolution);
+  ExpectSame(g.T_submap_grid, h.T_submap_grid);
+  for (Eigen::Index k = 0; k < a.surface.cells.size(); ++k) {
+    const SurfaceCell& c = a.surface.cells.data()[k];
+    const SurfaceCell& d = b.surface.cells.data()[k];
+    ASSERT_EQ(c.distance, d.distance) << k;
+    ASSERT_EQ(c.free, d.free) << k;
+    ASSERT_EQ(c.observed, d.observed) << k;
+  }
+  ASSERT_EQ(a.surface.walls.size(), b.surface.walls.size());
+  for (size_t k = 0; k < a.surface.walls.size(); ++k) {
+    EXPECT_EQ(a.surface.walls[k].position, b.surface.walls[k].position);
+    EXPECT_EQ(a.surface.walls[k].weight, b.surface.walls[k].weight);
+  }
+  EXPECT_EQ(a.surface.observed_points, b.surface.observed_points);
+  EXPECT_EQ(a.surface.area_per_observed_point,
+            b.surface.area_per_observed_point);
+  ASSERT_EQ(a.surface.self_similar_poses.size(),
+            b.surface.self_similar_poses.size());
+  for (size_t k = 0; k < a.surface.self_similar_poses.size(); ++k) {
+    ExpectSame(a.surface.self_similar_poses[k],
+               b.surface.self_similar_poses[k]);
+  }
+  ASSERT_EQ(a.features.features.size(), b.features.features.size());
+  for (size_t k = 0; k < a.features.features.size(); ++k) {
+    const Feature &f = a.features.features[k], &g2 = b.features.features[k];
+    EXPECT_EQ(f.keypoint.position, g2.keypoint.position);
+    EXPECT_EQ(f.keypoint.clearance, g2.keypoint.clearance);
+    EXPECT_EQ(f.keypoint.kind, g2.keypoint.kind);
+    EXPECT_EQ(f.keypoint.strength, g2.keypoint.strength);
+    EXPECT_EQ(f.orientation, g2.orientation);
+  }
+  EXPECT_EQ(a.features.descriptors, b.features.descriptors);
+}
+
+class PlaceFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const SubmapId& id : {SubmapId{0, 3}, SubmapId{1, 0}}) {
+      places_.emplace(id, Room(id));
+    }
+    directory_.Write("map", std::string(200000, 'm') + "ap");
+    const auto key = MakePlaceFileKey(directory_.File("map"), "options");
+    ASSERT_TRUE(key.ok()) << key.status();
+    key_ = *key;
+  }
+
+  void Write() const {
+    const absl::Status status = WritePlaces(path_, key_, places_);
+    ASSERT_TRUE(status.ok()) << status;
+  }
+  // Of reading the file, which fails.
+  [[nodiscard]] std::string Error(const PlaceFileKey& key) const {
+    const auto places = ReadPlaces(path_, key);
+    if (places.ok()) return "";
+    EXPECT_THAT(std::string(places.status().message()), HasSubstr(path_));
+    return std::string(places.status().message());
+  }
+
+  testing::TemporaryDirectory directory_;
+  const std::string path_ = directory_.File("places");
+  std::map<SubmapId, Place> places_;
+  PlaceFileKey key_;
+};
+
+TEST_F(PlaceFileTest, ReadsWhatWasWritten) {
+  ASSERT_FALSE(places_.at({0, 3}).features.features.empty());
+  Write();
+  const auto read = ReadPlaces(path_, key_);
+  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_EQ(read->size(), 2u);
+  for (const auto& [id, place] : places_) ExpectSame(read->at(id), place);
+  const std::string bytes = directory_.Read("places");
+  Write();
+  EXPECT_EQ(directory_.Read("places"), bytes);
+}
+
+TEST_F(PlaceFileTest, KeepsPlacesWithoutFeaturesAndFilesWithoutPlaces) {
+  places_.at({0, 3}).features = FeatureSet();
+  Write();
+  auto read = ReadPlaces(path_, key_);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_TRUE(read->at({0, 3}).features.features.empty());
+  places_.clear();
+  Write();
+  read = ReadPlaces(path_, key_);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_TRUE(read->empty());
+}
+
+TEST_F(PlaceFileTest, RefusesWhatBelongsToSomethingElse) {
+  EXPECT_TRUE(absl::IsNotFound(ReadPlaces(path_, key_).status()));
+  Write();
+  PlaceFileKey key = key_;
+  key.options += " ";
+  EXPECT_THAT(Error(key), HasSubstr("other options"));
+  // The same size, one byte of the second block other.
+  std::string map = directory_.Read("map");
+  map[100000] = 'n';
+  key = *MakePlaceFileKey(directory_.Write("other", map), "options");
+  EXPECT_EQ(key.map_size, key_.map_size);
+  EXPECT_THAT(Error(key), HasSubstr("another map"));
+  key = key_;
+  ++key.map_size;
+  EXPECT_THAT(Error(key), HasSubstr("another map"));
+}
+
+TEST_F(PlaceFileTest, NeedsAMapThatCanBeRead) {
+  const auto key = MakePlaceFileKey(directory_.File("none"), "");
+  ASSERT_FALSE(key.ok());
+  EXPECT_THAT(std::string(key.status().message()), HasSubstr("none"));
+}
+
+TEST_F(PlaceFileTest, AnyDamageIsAnError) {
+  Write();
+  const std::string good = directory_.Read("places");
+  // Everywhere near the ends and the records' seams, and here and there.
+  std::mt19937 engine(42);
+  for (int round = 0; round < 300; ++round) {
+    const size_t at = round < 100
+                          ? static_cast<size_t>(round)
+                          : static_cast<size_t>(testing::UniformInt(
+                                static_cast<int>(good.size()), &engine));
+    directory_.Write("places", good.substr(0, at));
+    EXPECT_NE(Error(key_), "") << "cut at " << at;
+    std::string bad = good;
+    bad[at] = static_cast<char>(bad[at] ^ (1 << round % 8));
+    directory_.Write("places", bad);
+    const auto read = ReadPlaces(path_, key_);
+    if (!read.ok()) continue;
+    // Bytes of gzip's header that mean nothing.
+    for (const auto& [id, place] : places_) ExpectSame(read->at(id), place);
+  }
+  directory_.Write("places", good + "x");
+  EXPECT_NE(Error(key_), "");
+  directory_.Write("places", "");
+  EXPECT_NE(Error(key_), "");
+  std::filesystem::remove(path_);
+  std::filesystem::create_directory(path_);
+  EXPECT_NE(Error(key_), "");
+}
+
+// Sound containers with contents that are not.
+TEST_F(PlaceFileTest, RecordsMustMatchTheHeader) {
+  Write();
+  std::vector<std::string> records;
+  {
+    auto reader = RecordReader::Open(path_);
+    ASSERT_TRUE(reader.ok());
+    std::string record;
+    while (*reader->Read(&record)) records.push_back(record);
+  }
+  ASSERT_EQ(records.size(), 3u);
+  const auto error = [this](const std::vector<std::string>& written) {
+    auto writer = RecordWriter::Open(path_);
+    for (const std::string& record : written) {
+      EXPECT_TRUE(writer->Write(record).ok());
+    }
+    EXPECT_TRUE(writer->Commit().ok());
+    return Error(key_);
+  };
+  EXPECT_EQ(error(records), "");
+  EXPECT_THAT(error({}), HasSubstr("header"));
+  EXPECT_THAT(error({records[0]}), HasSubstr("0 places of 2"));
+  EXPECT_THAT(error({records[0], records[1]}), HasSubstr("1 places of 2"));
+  EXPECT_THAT(error({records[0], records[1], records[1]}),
+              HasSubstr("was there before"));
+  EXPECT_THAT(error({records[1], records[1], records[2]}),
+              ::testing::Not(::testing::IsEmpty()));
+  EXPECT_THAT(error({records[0], records[1], "nonsense"}),
+              HasSubstr("record 3 is no place"));
+  ProtoPlace place;
+  ASSERT_TRUE(place.ParseFromString(records[2]));
+  place.mutable_descriptors()->Resize(
+      place.descriptors_size() / 2 / static_cast<int>(place.kinds().size()) *
+          static_cast<int>(place.kinds().size()),
+      0.f);
+  EXPECT_THAT(error({records[0], records[1], place.SerializeAsString()}),
+              HasSubstr("another length"));
+  proto::place_index::Header header;
+  ASSERT_TRUE(header.ParseFromString(records[0]));
+  header.set_version(77);
+  EXPECT_THAT(error({header.SerializeAsString(), records[1], records[2]}),
+              HasSubstr("version 77"));
+  header.set_kind("poems");
+  EXPECT_THAT(error({header.SerializeAsString(), records[1], records[2]}),
+              HasSubstr("no file of places"));
+}
+
+TEST(PlaceCodecTest, ImpossiblePlacesAreErrors) {
+  const std::string good = EncodePlace(Room({0, 3}));
+  ASSERT_TRUE(DecodePlace(good).ok());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  using Change = std::function<void(ProtoPlace*)>;
+  const std::vector<std::pair<const char*, Change>> changes = {
+      {"negative", [](ProtoPlace* p) { p->set_index(-1); }},
+      {"size", [](ProtoPlace* p) { p->set_num_cells_x(0); }},
+      {"size", [](ProtoPlace* p) { p->set_num_cells_y(-5); }},
+      {"size", [](ProtoPlace* p) { p->set_num_cells_y(1 << 30); }},
+      {"cells", [](ProtoPlace* p) { p->set_num_cells_x(1 << 15); }},
+      {"cells", [](ProtoPlace* p) { p->mutable_cells()->pop_back(); }},
+      {"observed", [](ProtoPlace* p) { p->mutable_cells()->back() = 2; }},
+      {"resolution", [](ProtoPlace* p) { p->set_resolution(0.); }},
+      {"resolution", [nan](ProtoPlace* p) { p->set_resolution(nan); }},
+      {"pose",
+       [infinity](ProtoPlace* p) {
+         p->mutable_t_submap_grid()->set_x(infinity);
+       }},
+      {"pose",
+       [](ProtoPlace* p) { p->mutable_t_submap_grid()->set_rotation(1e9); }},
+      {"walls", [](ProtoPlace* p) { p->clear_walls(); }},
+      {"walls", [](ProtoPlace* p) { p->add_walls(1.); }},
+      {"wall", [nan](ProtoPlace* p) { p->set_walls(3, nan); }},
+      {"wall", [](ProtoPlace* p) { p->set_walls(2, 0.); }},
+      {"observed points", [](ProtoPlace* p) { p->clear_observed_points(); }},
+      {"observed points", [](ProtoPlace* p) { p->add_observed_points(1.); }},
+      {"observed point",
+       [](ProtoPlace* p) { p->set_observed_points(1, -1e300); }},
+      {"area", [](ProtoPlace* p) { p->set_area_per_observed_point(-1.); }},
+      {"self-similar",
+       [nan](ProtoPlace* p) { p->mutable_self_similar_poses(0)->set_y(nan); }},
+      {"features", [](ProtoPlace* p) { p->add_features(1.); }},
+      {"features", [](ProtoPlace* p) { p->mutable_kinds()->push_back(0); }},
+      {"descriptors", [](ProtoPlace* p) { p->add_descriptors(1.f); }},
+      {"descriptors", [](ProtoPlace* p) { p->clear_descriptors(); }},
+      {"feature", [](ProtoPlace* p) { (*p->mutable_kinds())[0] = 3; }},
+      {"feature", [nan](ProtoPlace* p) { p->set_features(0, nan); }},
+      {"feature", [](ProtoPlace* p) { p->set_features(2, 1e20); }},
+      {"feature", [nan](ProtoPlace* p) { p->set_features(4, nan); }},
+      {"descriptor", [](ProtoPlace* p) {
+         p->set_descriptors(1, std::numeric_limits<float>::quiet_NaN());
+       }}};
+  for (size_t k = 0; k < changes.size(); ++k) {
+    ProtoPlace proto;
+    ASSERT_TRUE(proto.ParseFromString(good));
+    changes[k].second(&proto);
+    const auto place = DecodePlace(proto.SerializeAsString());
+    ASSERT_FALSE(place.ok()) << k;
+    EXPECT_THAT(std::string(place.status().message()),
+                HasSubstr(changes[k].first))
+        << k;
+  }
+}
+
+}  // namespace
+}  // namespace cartographer_sdf
