@@ -130,16 +130,16 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Court and Willow Garage; see docs/design.md.
         score_weights = {
           -- Of the fraction of wall points in the other's free space.
-          contradiction_ratio = -95.,
+          contradiction_ratio = -99.5,
           -- Of ln(0.05 + fraction of the smaller area that both saw).
-          log_overlap = 2.6,
+          log_overlap = 2.32,
           -- Of the number of places, squares of 2 m, whose walls agree.
           wall_evidence = 0.8,
           -- Of how evenly the walls face all ways.
-          sqrt_scatter_eigenvalue = 15.,
+          sqrt_scatter_eigenvalue = 10.,
           -- Of the lead over the best distinct pose.
-          margin = 0.9,
-          bias = -7.,
+          margin = 1.04,
+          bias = -4.67,
         },
         -- [m^2] Least area seen by both.
         min_overlap_area = 10.,

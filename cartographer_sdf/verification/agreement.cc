@@ -177,24 +177,23 @@ TileAgreement MeasureTileAgreement(const AgreementOptions& options,
                                    const Rigid2& T_reference_query,
                                    const size_t max_num_points) {
   Tiles tiles(reference);
-  const auto add_all = [&](const SurfaceModel& model,
-                           const SurfaceModel& points,
-                           const Rigid2& T_model_points,
-                           const Rigid2& T_reference_points) {
-    const size_t count = std::min(max_num_points, points.walls.size());
-    // Each point stands for those that are not looked at.
-    const double stands_for = static_cast<double>(points.walls.size()) /
-                              static_cast<double>(count) *
-                              points.geometry.resolution;
-    VisitCells(model, points.walls, T_model_points, max_num_points,
-               [&](const SurfacePoint& point, const SurfaceCell& cell) {
-                 const bool is_hit = 1e-3 * std::abs(cell.distance) <=
-                                     options.hit_distance_meters;
-                 if (!is_hit && !cell.observed) return;
-                 tiles.Add(T_reference_points * point.position,
-                           stands_for * Weight(options, point), is_hit);
-               });
-  };
+  const auto add_all =
+      [&](const SurfaceModel& model, const SurfaceModel& points,
+          const Rigid2& T_model_points, const Rigid2& T_reference_points) {
+        const size_t count = std::min(max_num_points, points.walls.size());
+        // Each point stands for those that are not looked at.
+        const double stands_for = static_cast<double>(points.walls.size()) /
+                                  static_cast<double>(count) *
+                                  points.geometry.resolution;
+        VisitCells(model, points.walls, T_model_points, max_num_points,
+                   [&](const SurfacePoint& point, const SurfaceCell& cell) {
+                     const bool is_hit = 1e-3 * std::abs(cell.distance) <=
+                                         options.hit_distance_meters;
+                     if (!is_hit && !cell.observed) return;
+                     tiles.Add(T_reference_points * point.position,
+                               stands_for * Weight(options, point), is_hit);
+                   });
+      };
   add_all(reference, query, T_reference_query, T_reference_query);
   add_all(query, reference, T_reference_query.Inverse(), Rigid2());
   return tiles.Summarize(kFullTileWallLength);

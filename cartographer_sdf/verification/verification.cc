@@ -119,10 +119,9 @@ std::vector<Candidate> RefineBest(const VerificationOptions& options,
     if (candidate) candidates.push_back(*std::move(candidate));
   }
   // Stable: of equal ones the first.
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) {
-                     return a.score > b.score;
-                   });
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
   return candidates;
 }
 
@@ -159,14 +158,12 @@ std::vector<Candidate> Rivals(const VerificationOptions& options,
   const Rigid2& T_reference_query = best.T_reference_query;
   const Eigen::Vector2d middle =
       MiddleOfOverlap(reference, query, T_reference_query);
-  std::vector<Rigid2> guesses = {
-      T_reference_query * Rigid2(2. * middle, M_PI)};
+  std::vector<Rigid2> guesses = {T_reference_query * Rigid2(2. * middle, M_PI)};
   // The direction in which the walls hold the pose least.
-  const Eigen::Vector2d along =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
-          best.normal_matrix.topLeftCorner<2, 2>())
-          .eigenvectors()
-          .col(0);
+  const Eigen::Vector2d along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+                                    best.normal_matrix.topLeftCorner<2, 2>())
+                                    .eigenvectors()
+                                    .col(0);
   for (const double slide : kSlides) {
     guesses.emplace_back(T_reference_query.translation() + slide * along,
                          T_reference_query.rotation());

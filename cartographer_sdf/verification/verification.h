@@ -37,12 +37,12 @@ enum class Verdict {
 // learned by logistic regression on pairs of submaps of several buildings, see
 // scripts/learn_score.py and docs/design.md.
 struct ScoreWeights {
-  double contradiction_ratio = -95.;  // mean of the two directions
-  double log_overlap = 2.6;  // ln(0.05 + fraction of the smaller area)
+  double contradiction_ratio = -99.5;  // mean of the two directions
+  double log_overlap = 2.32;   // ln(0.05 + fraction of the smaller area)
   double wall_evidence = 0.8;  // Agreement::WallEvidence
-  double sqrt_scatter_eigenvalue = 15.;
-  double margin = 0.9;  // to the best distinct pose, capped
-  double bias = -7.;
+  double sqrt_scatter_eigenvalue = 10.;
+  double margin = 1.04;  // to the best distinct pose, capped
+  double bias = -4.67;
 };
 [[nodiscard]] std::string Validate(const ScoreWeights& weights);
 

@@ -50,6 +50,7 @@ TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
   agreement.reference_in_query = {50., 40., 2., 0.};
   agreement.overlap_area = 49.;
   agreement.overlap = 0.7;
+  agreement.tiles = {16., 0.95};
   agreement.min_scatter_eigenvalue = 0.16;
   const auto terms = ScoreTerms(agreement, 0.1);
   const auto names = ScoreTermNames();

@@ -27,6 +27,7 @@ Match VerifiedMatch() {
   verification.agreement.reference_in_query = {50., 40., 2., 0.};
   verification.agreement.overlap_area = 49.;
   verification.agreement.overlap = 0.7;
+  verification.agreement.tiles = {16., 0.95};
   verification.agreement.min_scatter_eigenvalue = 0.16;
   match.verification = verification;
   return match;

@@ -88,6 +88,40 @@ TEST(AgreementTest, CertaintyCanBeIgnored) {
   EXPECT_EQ(agreement.contradictions, 2.);
 }
 
+TEST(TileAgreementTest, EachPlaceCountsOnce) {
+  // A room 20 m long, and the same with a box in one place.
+  const testing::Building room = testing::BareRoom(20., 4.);
+  testing::Building with_box = room;
+  with_box.push_back(testing::Furniture(8., 0., 1., 1., 0.));
+  const testing::Viewpoints viewpoints = {{-8., 1.}, {-4., -1.}, {0., 1.},
+                                          {4., -1.}, {8., 1.5},  {8., -1.5}};
+  const SurfaceModel a = testing::SurfaceSeenFrom(room, Rigid2(), viewpoints);
+  const SurfaceModel b =
+      testing::SurfaceSeenFrom(with_box, Rigid2(), viewpoints);
+  const TileAgreement same =
+      MeasureTileAgreement(AgreementOptions(), a, a, Rigid2(), kAll);
+  EXPECT_NEAR(same.mean_hit_ratio, 1., 1e-9);
+  // 48 m of wall.
+  EXPECT_NEAR(same.num_tiles, 24., 6.);
+  const TileAgreement different =
+      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(), kAll);
+  EXPECT_LT(different.mean_hit_ratio, 1. - 0.5 / different.num_tiles);
+  // Either way round, but for where the squares begin.
+  const TileAgreement swapped =
+      MeasureTileAgreement(AgreementOptions(), b, a, Rigid2(), kAll);
+  EXPECT_NEAR(swapped.mean_hit_ratio, different.mean_hit_ratio, 0.05);
+  // A sample stands for all.
+  const TileAgreement sampled =
+      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(), 400);
+  EXPECT_NEAR(sampled.num_tiles, different.num_tiles, 2.);
+  EXPECT_NEAR(sampled.mean_hit_ratio, different.mean_hit_ratio, 0.05);
+  // Far away they share nothing.
+  const TileAgreement none = MeasureTileAgreement(AgreementOptions(), a, b,
+                                                  Rigid2(500., 0., 0.), kAll);
+  EXPECT_EQ(none.num_tiles, 0.);
+  EXPECT_EQ(none.mean_hit_ratio, 0.);
+}
+
 TEST(AgreementTest, UnknownSaysNothing) {
   // Unknown, in the padding, and outside of the grid on either side.
   const DirectedAgreement agreement = Measure(

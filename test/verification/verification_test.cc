@@ -18,6 +18,7 @@ namespace cartographer_sdf {
 namespace {
 
 using testing::BareRoom;
+using testing::Box;
 using testing::Building;
 using testing::Furniture;
 using ::testing::Gt;
@@ -132,7 +133,8 @@ TEST(VerifyHypothesesTest, ContradictedByAWallInFreeSpace) {
 TEST(VerifyHypothesesTest, UnlikelyWhereLittleAgrees) {
   // As above, but with less in the way: no gate is hit, yet the sum speaks
   // against it.
-  const Building hall = BareRoom(14., 2.4);
+  const Building hall =
+      Joined(BareRoom(14., 2.4), {Furniture(-6., 0.8, 1.2, 0.6, 0.)});
   const Building with_box = Joined(hall, {Furniture(2., 0., 0.7, 0.7, 0.)});
   const testing::Viewpoints viewpoints = {{-5., -0.7}, {5., 0.7}, {0., 0.}};
   const Pair pair = MakePair(hall, viewpoints, with_box, viewpoints);
@@ -165,26 +167,39 @@ TEST(VerifyHypothesesTest, AmbiguousInASymmetricRoom) {
   const std::optional<Verification> verification =
       Verify(pair, {pair.truth, turned});
   EXPECT_EQ(VerdictOf(verification), "ambiguous");
-  EXPECT_LT(verification->margin, 0.05);
-  // Nothing else is wrong with either.
-  EXPECT_EQ(VerdictOf(Verify(pair, {pair.truth})), "accepted");
-  EXPECT_EQ(VerdictOf(Verify(pair, {turned})), "accepted");
+  EXPECT_LT(verification->margin, VerificationOptions().min_margin);
+  // The half turn is tried even where nobody proposed it.
+  EXPECT_EQ(VerdictOf(Verify(pair, {pair.truth})), "ambiguous");
+  EXPECT_EQ(VerdictOf(Verify(pair, {turned})), "ambiguous");
 }
 
 TEST(VerifyHypothesesTest, SelfSimilarPosesAreRivalsThatNobodyProposed) {
-  const testing::Viewpoints viewpoints = {{-3., 2.}, {3., -2.}, {0., 0.}};
-  const Pair pair =
-      MakePair(SymmetricRoom(), viewpoints, SymmetricRoom(), viewpoints,
-               Rigid2(0., 0., 0.2), Rigid2(0., 0., -0.1));
-  ASSERT_EQ(VerdictOf(Verify(pair, {pair.truth})), "accepted");
+  // Two equal rooms side by side, farther apart than any slide is tried.
+  const Rigid2 next_door(9., 0., 0.);
+  const Building room = Joined(
+      BareRoom(8., 6.),
+      {Furniture(2., 1., 1., 0.6, 0.3), Furniture(-1., -2., 1.4, 0.5, 0.)});
+  Building both = room;
+  for (Box box : room) {
+    box.T_world_box = next_door * box.T_world_box;
+    both.push_back(box);
+  }
+  const testing::Viewpoints inside = {{-3., 2.}, {3., -2.}, {0., 0.}};
+  testing::Viewpoints inside_both = inside;
+  for (const Eigen::Vector2d& p : inside) {
+    inside_both.push_back(next_door * p);
+  }
   for (const bool of_reference : {true, false}) {
-    Pair with_rival = pair;
-    (of_reference ? with_rival.reference : with_rival.query)
-        .self_similar_poses = {Rigid2(0., 0., M_PI)};
-    const std::optional<Verification> verification =
-        Verify(with_rival, {pair.truth});
+    Pair pair = of_reference ? MakePair(both, inside_both, room, inside,
+                                        Rigid2(), Rigid2(0.2, 0.1, 0.3))
+                             : MakePair(room, inside, both, inside_both,
+                                        Rigid2(0.2, 0.1, 0.3), Rigid2());
+    ASSERT_EQ(VerdictOf(Verify(pair, {pair.truth})), "accepted");
+    (of_reference ? pair.reference : pair.query).self_similar_poses = {
+        next_door};
+    const std::optional<Verification> verification = Verify(pair, {pair.truth});
     EXPECT_EQ(VerdictOf(verification), "ambiguous");
-    EXPECT_LT(verification->margin, 0.05);
+    EXPECT_LT(verification->margin, VerificationOptions().min_margin);
   }
 }
 
@@ -258,27 +273,26 @@ TEST(VerifyHypothesesTest, DoesNotDependOnTheOrderOfHypotheses) {
   }
 }
 
-TEST(AgreementTest, QualityFallsWithContradictions) {
+TEST(AgreementTest, EvidenceGrowsWithTheNumberOfPlacesThatAgree) {
   Agreement agreement;
-  agreement.query_in_reference = {100., 90., 2., 0.};
-  agreement.reference_in_query = {50., 40., 2., 0.};
-  agreement.overlap_area = 0.;
-  EXPECT_NEAR(agreement.Quality(), 0.5 * (0.9 + 0.8) - 0.02 - 0.04, 1e-12);
-  agreement.overlap_area = std::exp(1.) - 1.;
-  EXPECT_NEAR(agreement.Quality(), 0.79 + 0.07, 1e-12);
+  EXPECT_EQ(agreement.WallEvidence(), 0.);
+  agreement.tiles = {16., 0.95};
+  EXPECT_NEAR(agreement.WallEvidence(), 8. * 0.2, 1e-12);
+  // Fewer than by chance.
+  agreement.tiles = {16., 0.5};
+  EXPECT_NEAR(agreement.WallEvidence(), -8. * 0.25, 1e-12);
 }
 
 TEST(ScoreTest, IsLinearInItsTerms) {
   Agreement agreement;
   agreement.query_in_reference = {100., 90., 2., 0.};
   agreement.reference_in_query = {50., 40., 2., 0.};
-  agreement.overlap_area = 49.;
+  agreement.tiles = {16., 0.95};
   agreement.overlap = 0.7;
   agreement.min_scatter_eigenvalue = 0.16;
-  const ScoreWeights weights{1., 10., 100., 2., 3., 5., 7., -4.};
+  const ScoreWeights weights{10., 3., 2., 5., 7., -4.};
   EXPECT_NEAR(Score(weights, agreement, 0.1),
-              0.85 + 10. * 0.03 + 100. * 0.04 + 2. * std::log(50.) +
-                  3. * std::log(0.75) + 5. * 0.4 + 0.7 - 4.,
+              10. * 0.03 + 3. * std::log(0.75) + 2. * 1.6 + 5. * 0.4 + 0.7 - 4.,
               1e-12);
 }
 
