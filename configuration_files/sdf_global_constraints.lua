@@ -126,8 +126,8 @@ SDF_GLOBAL_CONSTRAINTS = {
         },
         -- Wall points of each submap for it.
         num_agreement_points = 2000,
-        -- Score = log-odds of being right. Learned on Intel, ACES, Killian
-        -- Court and Willow Garage; see docs/design.md.
+        -- Score = log-odds of being right. Learned by scripts/learn_score.py on
+        -- Intel, ACES, Killian Court, Willow Garage and two simulated offices.
         score_weights = {
           -- Of the fraction of wall points in the other's free space.
           contradiction_ratio = -99.5,
