@@ -31,6 +31,7 @@ CORE = {
 }
 OFFLINE = {
     "file": [],
+    "recording": ["geometry"],
     "pose_graph": ["geometry", "grid", "field", "verification", "closure"],
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
     "place_store": [*CORE, "pbstream", "proto"],
@@ -42,7 +43,8 @@ OFFLINE = {
     "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {
-    "live": ["geometry", "grid", "closure", "recognition", "config"],
+    "live": ["geometry", "grid", "closure", "recognition", "config",
+             "recording"],
     "tools": [*CORE, *OFFLINE, "live"],
 }
 ALLOWED = {**CORE, **OFFLINE, **TOP}
