@@ -37,7 +37,7 @@ Json::Json(const char* const text) : scalar_(Quoted(text)) {}
 Json::Json(const std::string& text) : scalar_(Quoted(text)) {}
 Json::Json(const int number) : scalar_(std::to_string(number)) {}
 Json::Json(const double number) {
-  if (std::isfinite(number)) scalar_ = absl::StrFormat("%.9g", number);
+  if (std::isfinite(number)) scalar_ = absl::StrFormat("%.12g", number);
 }
 Json::Json(const bool value) : scalar_(value ? "true" : "false") {}
 

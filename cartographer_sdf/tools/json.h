@@ -19,7 +19,7 @@ class Json {
   Json(const char* text);         // NOLINT(google-explicit-constructor)
   Json(const std::string& text);  // NOLINT(google-explicit-constructor)
   Json(int number);               // NOLINT(google-explicit-constructor)
-  // To nine digits. Null where it is not finite, which JSON cannot say.
+  // To twelve digits. Null where it is not finite, which JSON cannot say.
   Json(double number);  // NOLINT(google-explicit-constructor)
   Json(bool value);     // NOLINT(google-explicit-constructor)
   [[nodiscard]] static Json Null();
