@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "glog/logging.h"
+#include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
 struct ProgramResult {
@@ -50,7 +51,7 @@ inline ProgramResult RunProgramFile(const std::string& program,
 }
 
 inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
-  return RunProgramFile(TEST_PROGRAM, arguments);
+  return RunProgramFile(kTestProgram, arguments);
 }
 
 #endif  // TEST_TESTING_PROGRAM_H_
