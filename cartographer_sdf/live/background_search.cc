@@ -19,9 +19,8 @@ constexpr size_t kMaxLocationClosures = 3;
 
 RetrievalOptions RecognizerOptions(const LiveOptions& options) {
   RetrievalOptions retrieval = options.retrieval;
-  retrieval.max_num_candidates =
-      std::max(retrieval.max_num_candidates,
-               options.localization.max_num_candidates);
+  retrieval.max_num_candidates = std::max(
+      retrieval.max_num_candidates, options.localization.max_num_candidates);
   retrieval.min_num_candidates =
       std::min(retrieval.max_num_candidates,
                std::max(retrieval.min_num_candidates,
@@ -64,8 +63,8 @@ std::optional<Place> BackgroundSearch::Describe(
 }
 
 BackgroundSearch::Found BackgroundSearch::Recognize(const Place& query) const {
-  std::vector<RetrievalCandidate> candidates = recognizer_.Retrieve(
-      query, [this, &query](const SubmapId& id) {
+  std::vector<RetrievalCandidate> candidates =
+      recognizer_.Retrieve(query, [this, &query](const SubmapId& id) {
         return id.trajectory == query.id.trajectory &&
                std::abs(id.index - query.id.index) < options_.min_index_gap;
       });
@@ -137,18 +136,17 @@ BackgroundSearch::Localization BackgroundSearch::Localize(
 
   std::vector<Match> matches;
   std::vector<PoseVote> votes;
-  for (const RetrievalCandidate& candidate : recognizer_.Retrieve(
-           *query, [&T_map_submap](const SubmapId& id) {
-             return T_map_submap.count(id) == 0;
-           })) {
+  for (const RetrievalCandidate& candidate :
+       recognizer_.Retrieve(*query, [&T_map_submap](const SubmapId& id) {
+         return T_map_submap.count(id) == 0;
+       })) {
     ++result.num_candidates;
     std::optional<Match> match =
         MatchPlaces(options_.match, places().at(candidate.id), *query);
     if (!match) continue;
-    votes.push_back({T_map_submap.at(candidate.id) *
-                         match->closure.T_reference_query,
-                     match->closure.score,
-                     match->verdict == Verdict::kAccepted});
+    votes.push_back(
+        {T_map_submap.at(candidate.id) * match->closure.T_reference_query,
+         match->closure.score, match->verdict == Verdict::kAccepted});
     matches.push_back(*std::move(match));
   }
   const LocalizationOptions& options = options_.localization;
@@ -185,10 +183,10 @@ void BackgroundSearch::LiftLocation(const GrowingGrid& grid,
                                     Localization* const result) const {
   std::vector<SubmapNode> nodes;
   for (const PlacedScan& scan : grid.scans()) {
-    nodes.push_back({FromHost(scan.node),
-                     result->T_local_query.Inverse() *
-                         LocalNodePose(*scan.data),
-                     scan.data});
+    nodes.push_back(
+        {FromHost(scan.node),
+         result->T_local_query.Inverse() * LocalNodePose(*scan.data),
+         scan.data});
   }
   nodes = ThinOut(options_.lifting, nodes);
   for (const SubmapNode& node : nodes) {
@@ -200,10 +198,9 @@ void BackgroundSearch::LiftLocation(const GrowingGrid& grid,
   for (const size_t k : result->location->supporters) {
     if (result->closures.size() == kMaxLocationClosures) break;
     const LoopClosure& closure = matches[k].closure;
-    std::vector<Constraint> constraints =
-        LiftClosure(options_.lifting, pose_graph, closure,
-                    places().at(closure.reference).surface, query.surface,
-                    scans);
+    std::vector<Constraint> constraints = LiftClosure(
+        options_.lifting, pose_graph, closure,
+        places().at(closure.reference).surface, query.surface, scans);
     if (constraints.empty()) continue;
     result->closures.push_back(closure);
     result->constraints.push_back(std::move(constraints));

@@ -59,7 +59,8 @@ class BackgroundSearch {
   // Constraints of the closure; those of nodes of the reference are left out
   // where none are given. Both places are remembered.
   [[nodiscard]] std::vector<Constraint> Lift(
-      const LoopClosure& closure, const std::vector<SubmapNode>& reference_nodes,
+      const LoopClosure& closure,
+      const std::vector<SubmapNode>& reference_nodes,
       const std::vector<SubmapNode>& query_nodes) const;
 
   // Locating a trajectory. Starts again from nothing:

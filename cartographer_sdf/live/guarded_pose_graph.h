@@ -162,10 +162,10 @@ class GuardedPoseGraph : public cartographer::mapping::PoseGraph {
   std::map<std::string, LandmarkNode> GetLandmarkNodes() const override {
     return host_->GetLandmarkNodes();
   }
-  void SetInitialTrajectoryPose(const int from_trajectory_id,
-                                const int to_trajectory_id,
-                                const cartographer::transform::Rigid3d& pose,
-                                const cartographer::common::Time time) override {
+  void SetInitialTrajectoryPose(
+      const int from_trajectory_id, const int to_trajectory_id,
+      const cartographer::transform::Rigid3d& pose,
+      const cartographer::common::Time time) override {
     host_->SetInitialTrajectoryPose(from_trajectory_id, to_trajectory_id, pose,
                                     time);
   }

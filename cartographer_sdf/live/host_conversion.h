@@ -44,8 +44,8 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
 
 // As AddSerializedConstraints takes it: the host wants the pose of the tracking
 // frame, and takes the gravity alignment off again.
-[[nodiscard]] HostConstraint ToHost(const Constraint& constraint,
-                                    const Eigen::Quaterniond& gravity_alignment);
+[[nodiscard]] HostConstraint ToHost(
+    const Constraint& constraint, const Eigen::Quaterniond& gravity_alignment);
 
 // A copy, cropped to what is known. The grid must not change meanwhile. None
 // where there is no grid, or one that is broken.

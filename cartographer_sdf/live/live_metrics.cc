@@ -101,8 +101,8 @@ void RegisterMetrics(metrics::FamilyFactory* const family_factory) {
                         ->NewCounterFamily("cartographer_sdf_constraints",
                                            "Constraints that were injected")
                         ->Add({});
-  const auto boundaries = metrics::Histogram::ScaledPowersOf(
-      2., kMinSeconds, kMaxSeconds);
+  const auto boundaries =
+      metrics::Histogram::ScaledPowersOf(2., kMinSeconds, kMaxSeconds);
   all.describe_seconds =
       family_factory
           ->NewHistogramFamily("cartographer_sdf_describe_seconds",

@@ -25,7 +25,7 @@
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
-#include "cartographer_sdf/geometry/rigid3.h"
+#include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/recording/motion.h"
 
@@ -67,10 +67,6 @@ transform::Rigid3d ToHostPose(const Rigid2& pose) {
       {pose.translation().x(), pose.translation().y(), 0.},
       Eigen::Quaterniond(
           Eigen::AngleAxisd(pose.rotation(), Eigen::Vector3d::UnitZ())));
-}
-
-Rigid2 FromHostPose(const transform::Rigid3d& pose) {
-  return Project2D(Rigid3{pose.translation(), pose.rotation()});
 }
 
 // Every beam, as the host wants to see those that hit nothing, too. A range
@@ -295,9 +291,9 @@ class Run {
     moment.node_index = insertion->node_id.node_index;
     moment.time = FromHostTime(time);
     moment.T_map_tracking =
-        FromHostPose(map_builder_->pose_graph()->GetLocalToGlobalTransform(
-                         insertion->node_id.trajectory_id) *
-                     local_pose);
+        FromHost(map_builder_->pose_graph()->GetLocalToGlobalTransform(
+                     insertion->node_id.trajectory_id) *
+                 local_pose);
     moment.is_connected = IsConnected(insertion->node_id.trajectory_id);
     moment.cpu_seconds = clock_->cpu();
     const absl::MutexLock lock(&mutex_);

@@ -47,8 +47,7 @@ class SearchingMapBuilder : public LiveMapBuilder {
       const mapping::proto::TrajectoryBuilderOptions& trajectory_options,
       LocalSlamResultCallback local_slam_result_callback) override {
     auto callback =
-        [searcher = searcher_,
-         forward = std::move(local_slam_result_callback)](
+        [searcher = searcher_, forward = std::move(local_slam_result_callback)](
             const int trajectory_id, const cartographer::common::Time time,
             const cartographer::transform::Rigid3d local_pose,
             cartographer::sensor::RangeData range_data_in_local,
@@ -95,9 +94,9 @@ class SearchingMapBuilder : public LiveMapBuilder {
       mapping::proto::SubmapQuery::Response* const response) override {
     return host_->SubmapToProto(submap_id, response);
   }
-  void SerializeState(const bool include_unfinished_submaps,
-                      cartographer::io::ProtoStreamWriterInterface*
-                          const writer) override {
+  void SerializeState(
+      const bool include_unfinished_submaps,
+      cartographer::io::ProtoStreamWriterInterface* const writer) override {
     host_->SerializeState(include_unfinished_submaps, writer);
   }
   bool SerializeStateToFile(const bool include_unfinished_submaps,

@@ -95,8 +95,8 @@ void Searcher::BeginSearch(const int trajectory_id,
   trajectory->is_restarted = true;
   trajectory->scans.clear();
   trajectory->search_begin = trajectory->distance_driven;
-  trajectory->next_query = trajectory->distance_driven +
-                           options_.localization.query_interval_meters;
+  trajectory->next_query =
+      trajectory->distance_driven + options_.localization.query_interval_meters;
   LocalizationResult result;
   result.trajectory_id = trajectory_id;
   result.reason = has_map_ ? LocalizationReason::kNotEnoughSeen
@@ -138,7 +138,8 @@ void Searcher::OnLocalSlamResult(
                       kMaxNumDurations] = static_cast<float>(seconds);
   }
   ++summary_.num_callbacks;
-  summary_.callback_mean_seconds += seconds;  // their sum, until it is asked for
+  summary_.callback_mean_seconds +=
+      seconds;  // their sum, until it is asked for
   summary_.callback_max_seconds =
       std::max(summary_.callback_max_seconds, seconds);
 }
@@ -232,8 +233,7 @@ void Searcher::FinishTrajectory(const int trajectory_id,
       worker_.Schedule(
           [this, trajectory_id] { search_.StopLocalizing(trajectory_id); });
       if (on_localization_) {
-        worker_.Schedule(
-            [this, result = *ended] { on_localization_(result); });
+        worker_.Schedule([this, result = *ended] { on_localization_(result); });
       }
     }
     trajectory.is_searched = false;
@@ -294,9 +294,8 @@ void Searcher::LogClosure(const Closure& closure) const {
   if (!options_.log_closures) return;
   const LoopClosure& found = closure.record.closure;
   LOG(INFO) << "closure of submap " << found.query << " with "
-            << found.reference << ": "
-            << ClosureFateName(closure.record.fate) << ", score "
-            << found.score << ", " << found.evidence.inliers
+            << found.reference << ": " << ClosureFateName(closure.record.fate)
+            << ", score " << found.score << ", " << found.evidence.inliers
             << " inliers, overlap " << found.evidence.overlap << ", residual "
             << found.evidence.residual << " m, "
             << closure.record.num_constraints << " constraints";
@@ -330,12 +329,12 @@ void Searcher::Shutdown() {
   }
   worker_.Stop();
   const LiveSummary summary = GetSummary();
-  LOG(INFO) << "searched " << summary.num_submaps << " submaps: "
-            << summary.num_candidates << " candidates, " << summary.num_closures
-            << " closures, of which " << summary.num_injected
-            << " were injected as " << summary.num_constraints
-            << " constraints; " << summary.worker_cpu_seconds
-            << " s of the worker, at most "
+  LOG(INFO) << "searched " << summary.num_submaps
+            << " submaps: " << summary.num_candidates << " candidates, "
+            << summary.num_closures << " closures, of which "
+            << summary.num_injected << " were injected as "
+            << summary.num_constraints << " constraints; "
+            << summary.worker_cpu_seconds << " s of the worker, at most "
             << 1e3 * summary.callback_p99_seconds
             << " ms added to 99 % of the local SLAM results";
 }
@@ -372,12 +371,10 @@ LiveSummary Searcher::GetSummary() const {
   summary.worker_cpu_seconds = cpu_seconds;
   summary.num_closures = static_cast<int>(closures_.size());
   if (summary.num_callbacks > 0) {
-    summary.callback_mean_seconds /=
-        static_cast<double>(summary.num_callbacks);
+    summary.callback_mean_seconds /= static_cast<double>(summary.num_callbacks);
     std::vector<float> seconds = callback_seconds_;
-    const auto p99 =
-        seconds.begin() + static_cast<std::ptrdiff_t>(
-                              (seconds.size() - 1) * 99 / 100);
+    const auto p99 = seconds.begin() + static_cast<std::ptrdiff_t>(
+                                           (seconds.size() - 1) * 99 / 100);
     std::nth_element(seconds.begin(), p99, seconds.end());
     summary.callback_p99_seconds = *p99;
   }

@@ -8,9 +8,9 @@
 // Threads: the host's sensor threads (OnLocalSlamResult), its pool threads
 // (EnterRound, with the host's mutex held), our worker (tasks), and whatever
 // thread calls the rest. Our mutex is taken with the host's mutex held, so no
-// method of the host's pose graph that takes its mutex is called with ours held.
-// AddSerializedConstraints takes another one, that of the queue, which the host
-// never holds while it calls us.
+// method of the host's pose graph that takes its mutex is called with ours
+// held. AddSerializedConstraints takes another one, that of the queue, which
+// the host never holds while it calls us.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
 #define CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
@@ -57,8 +57,8 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     Searcher* const searcher_;
   };
 
-  void AddTrajectory(int trajectory_id, bool has_initial_pose,
-                     bool is_trimmed) ABSL_LOCKS_EXCLUDED(mutex_);
+  void AddTrajectory(int trajectory_id, bool has_initial_pose, bool is_trimmed)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   // On the sensor thread. `insertion` may be null.
   void OnLocalSlamResult(
       int trajectory_id, const cartographer::sensor::RangeData& range_data,
@@ -111,16 +111,16 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     bool is_finished = false;
     int num_submaps = 0;
     const cartographer::mapping::Submap* newest_submap = nullptr;
-    std::vector<int> growing;  // indices of its submaps
+    std::vector<int> growing;                 // indices of its submaps
     std::optional<Eigen::Vector2d> position;  // local
     double distance_driven = 0.;
     // Being located.
     bool is_searched = false;
-    bool is_restarted = false;       // the worker has to start anew
-    bool was_located = false;        // before this search
+    bool is_restarted = false;  // the worker has to start anew
+    bool was_located = false;   // before this search
     bool is_query_scheduled = false;
-    double search_begin = 0.;  // distance driven then
-    double next_query = 0.;    // distance driven
+    double search_begin = 0.;       // distance driven then
+    double next_query = 0.;         // distance driven
     std::vector<PlacedScan> scans;  // not yet taken by the worker
     std::optional<LocalizationResult> localization;
   };
@@ -169,9 +169,8 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                                  const std::set<int>& loaded_trajectories,
                                  const cartographer::mapping::Trimmable& graph);
   // Those of ready closures whose submaps and nodes exist.
-  void InjectReady(
-      const std::function<bool(const SubmapId&)>& has_submap,
-      const std::function<bool(const NodeId&)>& has_node)
+  void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
+                   const std::function<bool(const NodeId&)>& has_node)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
   // Tasks of the worker.

@@ -61,7 +61,8 @@ std::map<SubmapId, Place> ReadPlacesOf(const PlaceFileKey& key,
       ReadPlaces(places_path, key);
   if (places.ok()) return *std::move(places);
   if (!absl::IsNotFound(places.status())) {
-    LOG(INFO) << places.status().message() << "; its submaps are described anew";
+    LOG(INFO) << places.status().message()
+              << "; its submaps are described anew";
   }
   return {};
 }
@@ -224,8 +225,7 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
       const SubmapId id = FromHost(submap.id);
       const SubmapId id_of_file{id_in_file, id.index};
       if (places.count(id_of_file) == 0) {
-        const std::optional<OccupancyGrid> grid =
-            CopyGrid(*submap.data.submap);
+        const std::optional<OccupancyGrid> grid = CopyGrid(*submap.data.submap);
         std::optional<Place> place;
         if (grid) place = search_.Describe(id_of_file, *grid);
         const absl::MutexLock lock(&mutex_);
@@ -346,13 +346,12 @@ void Searcher::QueryLocation(const int trajectory_id) {
     // Ended, or asked anew meanwhile.
     if (!trajectory.is_searched || trajectory.is_restarted) return;
     result.num_queries = trajectory.localization->num_queries + 1;
-    result.cpu_seconds = trajectory.localization->cpu_seconds +
-                         ThreadCpuSeconds() - cpu_begin;
+    result.cpu_seconds =
+        trajectory.localization->cpu_seconds + ThreadCpuSeconds() - cpu_begin;
     trajectory.localization = result;
     trajectory.next_query =
-        trajectory.distance_driven +
-        std::max(options.query_interval_meters,
-                 kQueryBackoff * distance_driven);
+        trajectory.distance_driven + std::max(options.query_interval_meters,
+                                              kQueryBackoff * distance_driven);
     if (!result.located) return;
     trajectory.is_searched = false;
     trajectory.scans.clear();
@@ -377,7 +376,8 @@ void Searcher::QueryLocation(const int trajectory_id) {
   LOG(INFO) << "trajectory " << trajectory_id << " is located in the map at "
             << *result.T_map_node << " after " << result.distance_driven
             << " m and " << result.num_queries << " queries, score "
-            << result.score << ", the next best pose " << result.runner_up_score;
+            << result.score << ", the next best pose "
+            << result.runner_up_score;
   if (on_localization_) on_localization_(result);
 }
 

@@ -72,10 +72,9 @@ inline void FeedScan(
   auto* const builder = map_builder->GetTrajectoryBuilder(trajectory_id);
   const Rigid3 pose = Embed3D(T_odometry_robot);
   builder->AddSensorData(
-      kOdometry,
-      cartographer::sensor::OdometryData{
-          TimeOf(seconds), cartographer::transform::Rigid3d(pose.translation,
-                                                            pose.rotation)});
+      kOdometry, cartographer::sensor::OdometryData{
+                     TimeOf(seconds), cartographer::transform::Rigid3d(
+                                          pose.translation, pose.rotation)});
   cartographer::sensor::TimedPointCloudData data;
   data.time = TimeOf(seconds);
   data.origin = Eigen::Vector3f::Zero();

@@ -49,8 +49,8 @@ mapping::ProbabilityGridRangeDataInserter2D Inserter() {
 
 // Every known cell of the host is one of ours with the same probability at the
 // same place, and ours has no others.
-void ExpectSame(const mapping::ProbabilityGrid& host, const Rigid2& T_local_grid,
-                const OccupancyGrid& grid) {
+void ExpectSame(const mapping::ProbabilityGrid& host,
+                const Rigid2& T_local_grid, const OccupancyGrid& grid) {
   int num_known = 0;
   const Eigen::Array2i& size = grid.geometry.size;
   for (int i = 0; i < size.x(); ++i) {
@@ -96,18 +96,16 @@ TEST(HostConversionTest, SubmapsAreCopiedCellByCell) {
     if (is_finished) submap.Finish();
     const std::optional<OccupancyGrid> grid = CopyGrid(submap);
     ASSERT_TRUE(grid);
-    ExpectSame(
-        *static_cast<const mapping::ProbabilityGrid*>(submap.grid()),
-        Rigid2(origin.x(), origin.y(), 0.), *grid);
+    ExpectSame(*static_cast<const mapping::ProbabilityGrid*>(submap.grid()),
+               Rigid2(origin.x(), origin.y(), 0.), *grid);
   }
 }
 
 TEST(HostConversionTest, GrowingGridsAreWhatTheHostWouldDraw) {
   const auto node = std::make_shared<mapping::TrajectoryNode::Data>();
   // As with odometry: the gravity alignment holds the yaw, too.
-  node->gravity_alignment =
-      Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
-      Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitX());
+  node->gravity_alignment = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                            Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitX());
   node->local_pose =
       transform::Rigid3d({4., -7., 0.}, Eigen::Quaterniond::Identity()) *
       transform::Rigid3d::Rotation(node->gravity_alignment);
@@ -156,8 +154,8 @@ TEST(HostConversionTest, ConstraintsHoldTheGravityAlignment) {
   const Eigen::Quaterniond gravity_alignment(
       Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitZ()) *
       Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()));
-  const Constraint constraint{{1, 2}, {3, 4}, {5., 6., -0.4}, 7.,
-                              8.,     Constraint::Tag::kInterSubmap};
+  const Constraint constraint{{1, 2}, {3, 4}, {5., 6., -0.4},
+                              7.,     8.,     Constraint::Tag::kInterSubmap};
   const HostConstraint host = ToHost(constraint, gravity_alignment);
   EXPECT_EQ(host.submap_id, (mapping::SubmapId{1, 2}));
   EXPECT_EQ(host.node_id, (mapping::NodeId{3, 4}));

@@ -62,10 +62,9 @@ class ModelOfHost {
   }
   int num_injected() const { return num_injected_; }
   int num_hooks() const {
-    return static_cast<int>(
-        std::count_if(trimmers_.begin(), trimmers_.end(), [](const Item& item) {
-          return item.kind == Kind::kHook;
-        }));
+    return static_cast<int>(std::count_if(
+        trimmers_.begin(), trimmers_.end(),
+        [](const Item& item) { return item.kind == Kind::kHook; }));
   }
 
  private:
@@ -183,8 +182,8 @@ TEST(InjectionGateTest, NeverLetsThroughWhatCouldBeTrimmed) {
         host.Announce();
         users.push_back(0);
       } else if (action < 7 && !users.empty()) {
-        int& stage = users[static_cast<size_t>(
-            draw(static_cast<int>(users.size())))];
+        int& stage =
+            users[static_cast<size_t>(draw(static_cast<int>(users.size())))];
         if (stage == 0) {
           if (draw(2) == 0) {
             host.ForwardFinish();

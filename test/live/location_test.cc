@@ -38,8 +38,8 @@ TEST(LocationTest, RefusedMatchesRivalButDoNotSupport) {
 
 TEST(LocationTest, TurnedPosesAreDistinct) {
   const std::optional<Location> location =
-      FindLocation(LocalizationOptions(), {{{1., 2., 0.}, 4., true},
-                                           {{1., 2., 3.}, 3., true}});
+      FindLocation(LocalizationOptions(),
+                   {{{1., 2., 0.}, 4., true}, {{1., 2., 3.}, 3., true}});
   ASSERT_TRUE(location);
   EXPECT_EQ(location->score, 4.);
   EXPECT_EQ(location->runner_up_score, 3.);
@@ -47,8 +47,8 @@ TEST(LocationTest, TurnedPosesAreDistinct) {
 
 TEST(LocationTest, PosesBetweenAreNeitherSameNorDistinct) {
   const std::optional<Location> location =
-      FindLocation(LocalizationOptions(), {{{1., 2., 0.}, 4., true},
-                                           {{1.7, 2., 0.}, 3., true}});
+      FindLocation(LocalizationOptions(),
+                   {{{1., 2., 0.}, 4., true}, {{1.7, 2., 0.}, 3., true}});
   ASSERT_TRUE(location);
   EXPECT_EQ(location->score, 4.);
   EXPECT_EQ(location->runner_up_score, 0.);
@@ -56,8 +56,8 @@ TEST(LocationTest, PosesBetweenAreNeitherSameNorDistinct) {
 
 TEST(LocationTest, AnglesWrap) {
   const std::optional<Location> location =
-      FindLocation(LocalizationOptions(), {{{1., 2., 3.12}, 4., true},
-                                           {{1., 2., -3.12}, 3., true}});
+      FindLocation(LocalizationOptions(),
+                   {{{1., 2., 3.12}, 4., true}, {{1., 2., -3.12}, 3., true}});
   ASSERT_TRUE(location);
   EXPECT_EQ(location->score, 7.);
 }

@@ -21,10 +21,10 @@ namespace cartographer_sdf {
 namespace {
 
 namespace mapping = cartographer::mapping;
-using ::testing::SizeIs;
 using testing::FeedScan;
 using testing::MakeStockOptions;
 using testing::SensorIds;
+using ::testing::SizeIs;
 
 // Cartographer does without loop closing of its own, and optimises often.
 constexpr char kWithoutOwnSearch[] =
@@ -57,8 +57,9 @@ const Building& TheBuilding() {
       if (building->poses.empty() ||
           (building->poses.back().translation() - T_world_robot.translation())
                   .norm() >= kStep ||
-          std::abs((building->poses.back().Inverse() * T_world_robot)
-                       .rotation()) >= 0.3) {
+          std::abs(
+              (building->poses.back().Inverse() * T_world_robot).rotation()) >=
+              0.3) {
         building->poses.push_back(T_world_robot);
       }
     }
@@ -85,8 +86,8 @@ class Robot {
       // Odometry that turns a bit too little; scan matching corrects it.
       if (T_world_previous_) {
         const Rigid2 moved = T_world_previous_->Inverse() * T_world_robot;
-        T_odometry_robot_ = T_odometry_robot_ *
-                            Rigid2(moved.translation(), 0.98 * moved.rotation());
+        T_odometry_robot_ = T_odometry_robot_ * Rigid2(moved.translation(),
+                                                       0.98 * moved.rotation());
       }
       T_world_previous_ = T_world_robot;
       FeedScan(map_builder_, trajectory_id_, seconds_, T_odometry_robot_,
@@ -112,8 +113,7 @@ void ExpectNear(const Rigid2& a, const Rigid2& b, const double meters,
 }
 
 TEST(MapBuilderTest, DisabledItIsTheHostItself) {
-  auto host =
-      mapping::CreateMapBuilder(MakeStockOptions("").map_builder);
+  auto host = mapping::CreateMapBuilder(MakeStockOptions("").map_builder);
   auto* const address = host.get();
   LiveOptions options;
   options.enabled = false;
@@ -132,11 +132,13 @@ TEST(MapBuilderTest, ClosesLoops) {
   int num_results = 0;
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder,
-      [&num_results](int, cartographer::common::Time,
-                     cartographer::transform::Rigid3d,
-                     cartographer::sensor::RangeData,
-                     std::unique_ptr<const mapping::TrajectoryBuilderInterface::
-                                         InsertionResult>) { ++num_results; });
+      [&num_results](
+          int, cartographer::common::Time, cartographer::transform::Rigid3d,
+          cartographer::sensor::RangeData,
+          std::unique_ptr<
+              const mapping::TrajectoryBuilderInterface::InsertionResult>) {
+        ++num_results;
+      });
   const std::vector<Rigid2>& poses = TheBuilding().poses;
   Robot robot(map_builder.get(), trajectory_id, 1);
   robot.Drive(poses);
@@ -177,10 +179,10 @@ TEST(MapBuilderTest, ClosesLoops) {
     const Rigid2 T_first_tracking =
         poses[static_cast<size_t>(first_node)].Inverse() *
         poses[static_cast<size_t>(constraint.node_id.node_index)];
-    ExpectNear(T_submap_node * FromHost(cartographer::transform::Rigid3d::
-                                            Rotation(node.constant_data
-                                                         ->gravity_alignment)),
-               T_submap_first * T_first_tracking, 0.25, 0.05);
+    ExpectNear(
+        T_submap_node * FromHost(cartographer::transform::Rigid3d::Rotation(
+                            node.constant_data->gravity_alignment)),
+        T_submap_first * T_first_tracking, 0.25, 0.05);
   }
   EXPECT_EQ(num_inter, summary.num_constraints);
   EXPECT_GT(num_inter, 10);
@@ -267,21 +269,20 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
       robot.Drive(poses, [&] {
         ++num_driven;
         live->WaitUntilIdle();
-        if (!num_until_located && live->GetLocalization(trajectory_id)->located) {
+        if (!num_until_located &&
+            live->GetLocalization(trajectory_id)->located) {
           num_until_located = num_driven;
         }
         // Then two more rounds.
         return num_until_located && num_driven == *num_until_located + 15;
       });
-      ASSERT_TRUE(num_until_located)
-          << LocalizationReasonName(
-                 live->GetLocalization(trajectory_id)->reason);
+      ASSERT_TRUE(num_until_located) << LocalizationReasonName(
+          live->GetLocalization(trajectory_id)->reason);
       const LocalizationResult result = *live->GetLocalization(trajectory_id);
       EXPECT_EQ(result.reason, LocalizationReason::kLocated);
       EXPECT_GE(result.num_queries, 2);
       EXPECT_LT(result.distance_driven, 10.);
-      ExpectNear(*result.T_map_local,
-                 TrueMapPose(poses.front()), 0.3, 0.05);
+      ExpectNear(*result.T_map_local, TrueMapPose(poses.front()), 0.3, 0.05);
       {
         const absl::MutexLock lock(&mutex);
         ASSERT_THAT(results, SizeIs(1));

@@ -3,8 +3,8 @@
 
 // Everything that may take a submap or a node away, at random and all at once,
 // while as many constraints as possible are added, most of them wrong. The host
-// aborts the process where one comes too late. Submaps are cheap: two scans of a
-// small room each. SDF_STRESS_NODES=20000 drives for longer.
+// aborts the process where one comes too late. Submaps are cheap: two scans of
+// a small room each. SDF_STRESS_NODES=20000 drives for longer.
 
 #include <array>
 #include <atomic>
