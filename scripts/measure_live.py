@@ -4,13 +4,14 @@
 """Measures the searcher beside a live Cartographer, side by side with stock.
 
 usage: measure_live.py mapping RESULT.json [LOG ...]
-       measure_live.py localization RESULT.json [--starts N] [--factor F]
+       measure_live.py localization RESULT.json [--starts N] [--seconds S] [--factor F]
        measure_live.py report RESULT.json [RESULT.json ...]
 
 mapping drives whole recordings (default: intel aces mit_killian) through
 Cartographer alone, with the searcher in place of its loop search, and with
 both. localization drives pieces of willow_2 through the frozen map of willow_1,
-with the searcher and with Cartographer's own global search. Both append to
+with the searcher and with Cartographer's own global search: N pieces (20) of S
+seconds (60) at F times real time (1). Both append to
 RESULT.json what they measured; report prints it as Markdown.
 
 Environment: BUILD_DIR (default: build beside scripts/), DATA_DIR (default:
@@ -25,6 +26,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import statistics
 import struct
 import subprocess
@@ -50,7 +52,6 @@ POSE_GRAPH.global_constraint_search_after_n_seconds = 10.
 return options
 """
 LOCALIZATION = {"searcher": None, "stock 0.003": "0.003", "stock 1.0": "1."}
-PIECE_SECONDS = 60
 # Nodes after the first constraint, until which the pose has to be right.
 NODES_TO_SETTLE = 10
 RIGHT_M, WRONG_M, RIGHT_DEGREES = 0.5, 1.0, 10.0
@@ -222,10 +223,13 @@ def judge(truth, nodes):
     }
 
 
-def measure_localization(results, num_starts, factor):
+def measure_localization(results, num_starts, seconds, factor):
     """One row for each start and variant."""
     truth = WillowTruth()
-    length = truth.times[-1] - truth.times[0] - PIECE_SECONDS
+    length = truth.times[-1] - truth.times[0] - seconds
+    # A copy, as the searcher leaves a file of places beside the map.
+    copy = tempfile.TemporaryDirectory(dir=os.environ.get("WORK_DIR"))
+    frozen_map = shutil.copy(DATA / "willow_1.pbstream", copy.name)
     for k in range(num_starts):
         start = round(length * k / max(1, num_starts - 1), 1)
         for variant, ratio in chosen(LOCALIZATION).items():
@@ -236,8 +240,8 @@ def measure_localization(results, num_starts, factor):
                     host = "stock_localization.lua"
                     (work / host).write_text(STOCK_LOCALIZATION.format(ratio=ratio))
                 run, nodes = run_log(
-                    work, log=DATA / "willow_2.log.gz", map=DATA / "willow_1.pbstream",
-                    configuration_basename=host, start=start, duration=PIECE_SECONDS,
+                    work, log=DATA / "willow_2.log.gz", map=frozen_map,
+                    configuration_basename=host, start=start, duration=seconds,
                     sdf_configuration_basename="" if ratio else "sdf_live.lua",
                     real_time_factor=factor)
             row = {"kind": "localization", "variant": variant, "start": start, "factor": factor,
@@ -246,6 +250,7 @@ def measure_localization(results, num_starts, factor):
             row.update(judge(truth, nodes))
             results.append(row)
             yield
+    copy.cleanup()
 
 
 # --- Markdown. ---------------------------------------------------------------
@@ -325,11 +330,13 @@ def main():
                 function(mine)
         return 0
     num_starts = int(option(arguments, "--starts", 20))
+    seconds = option(arguments, "--seconds", 60.0)
     factor = option(arguments, "--factor", 1.0)
     path = pathlib.Path(arguments[1])
     results = json.loads(path.read_text()) if path.exists() else []
     steps = (measure_mapping(results, arguments[2:] or ["intel", "aces", "mit_killian"])
-             if arguments[0] == "mapping" else measure_localization(results, num_starts, factor))
+             if arguments[0] == "mapping"
+             else measure_localization(results, num_starts, seconds, factor))
     for _ in steps:
         # After each, as they take long.
         path.write_text(json.dumps(results, indent=1))
