@@ -52,8 +52,6 @@ POSE_GRAPH.global_constraint_search_after_n_seconds = 10.
 return options
 """
 LOCALIZATION = {"searcher": None, "stock 0.003": "0.003", "stock 1.0": "1."}
-# Nodes after the first constraint, until which the pose has to be right.
-NODES_TO_SETTLE = 10
 RIGHT_M, WRONG_M, RIGHT_DEGREES = 0.5, 1.0, 10.0
 # From year 1 to 1970, in seconds: the host's time and ours.
 EPOCH = 719162 * 24 * 3600
@@ -204,23 +202,33 @@ class WillowTruth:
                 abs(math.degrees(math.remainder(node["yaw"] - truth[2], 2 * math.pi))))
 
 
-def judge(truth, nodes):
-    """What became of one drive: from the first constraint on, and settled."""
+def judge(truth, run, nodes):
+    """What became of one drive. Its last pose counts, and what the searcher said."""
+    errors = [truth.error(node) for node in nodes]
+    is_right = [meters < RIGHT_M and degrees < RIGHT_DEGREES for meters, degrees in errors]
+    said = [math.hypot(answer["T_map_node"]["x"] - truth.in_map(answer["time"])[0],
+                       answer["T_map_node"]["y"] - truth.in_map(answer["time"])[1])
+            for answer in run["localizations"] if answer["located"]]
     first = next((i for i, node in enumerate(nodes) if node["connected"]), None)
     if first is None:
-        return {"verdict": "not located"}
-    settled = nodes[min(first + NODES_TO_SETTLE, len(nodes) - 1)]
-    meters, degrees = truth.error(settled)
-    right = meters < RIGHT_M and degrees < RIGHT_DEGREES
-    wrong = meters > WRONG_M or degrees > RIGHT_DEGREES
-    return {
-        "verdict": "right" if right else "wrong" if wrong else "near",
-        "meters": nodes[first]["distance"],
-        "seconds": nodes[first]["time"] - nodes[0]["time"],
-        "cpu_seconds": nodes[first]["cpu_seconds"],
-        "error_m": meters, "error_degrees": degrees,
-        "last_error_m": truth.error(nodes[-1])[0],
+        return {"verdict": "not located", "said_error_m": said}
+    # From where on it stays right.
+    settled = len(nodes)
+    while settled > first and is_right[settled - 1]:
+        settled -= 1
+    is_wrong = (errors[-1][0] > WRONG_M or errors[-1][1] > RIGHT_DEGREES
+                or any(meters > WRONG_M for meters in said))
+    row = {
+        "verdict": "wrong" if is_wrong else "right" if is_right[-1] else "near",
+        "said_error_m": said,
+        "last_error_m": errors[-1][0], "last_error_degrees": errors[-1][1],
     }
+    for name, i in (("connected", first), ("settled", settled)):
+        if i < len(nodes):
+            row[name] = {"meters": nodes[i]["distance"],
+                         "seconds": nodes[i]["time"] - nodes[0]["time"],
+                         "cpu_seconds": nodes[i]["cpu_seconds"]}
+    return row
 
 
 def measure_localization(results, num_starts, seconds, factor):
@@ -247,7 +255,7 @@ def measure_localization(results, num_starts, seconds, factor):
             row = {"kind": "localization", "variant": variant, "start": start, "factor": factor,
                    "max_delay_seconds": run["max_delay_seconds"],
                    "localizations": run["localizations"], "all_cpu_seconds": run["cpu_seconds"]}
-            row.update(judge(truth, nodes))
+            row.update(judge(truth, run, nodes))
             results.append(row)
             yield
     copy.cleanup()
@@ -258,7 +266,7 @@ def report_mapping(rows):
     """A table for each recording."""
     for name in dict.fromkeys(row["name"] for row in rows):
         print(f"\n### {name}\n\n| | wall [s] | CPU [s] | of it the searcher [s] | closures injected |"
-              " AddSensorData of a scan, p50 / p99 [ms] | added by the searcher, mean / p99 [ms] |"
+              " AddSensorData, mean / p99 [ms] | added by the searcher, mean / p99 [ms] |"
               "\n| --- | --- | --- | --- | --- | --- | --- |")
         mine = [row for row in rows if row["name"] == name]
         for row in mine:
@@ -269,34 +277,36 @@ def report_mapping(rows):
                 injected = f"{searcher['injected']} of {searcher['closures']}"
                 call = searcher["callback_milliseconds"]
                 added = f"{call['mean']:.4f} / {call['p99']:.4f}"
-            scan = row["scan_milliseconds"]
+            call_all = row["add_sensor_data_milliseconds"]
             print(f"| {row['variant']} | {row['wall_seconds'] + row['final_wall_seconds']:.0f} |"
                   f" {row['cpu_seconds'] + row['final_cpu_seconds']:.1f} | {worker} | {injected} |"
-                  f" {scan['median']:.2f} / {scan['p99']:.2f} | {added} |")
+                  f" {call_all['mean']:.2f} / {call_all['p99']:.2f} | {added} |")
         for row in mine:
             print(f"\n{row['variant']}:\n\n```\n{row['errors'].rstrip()}\n```")
 
 
-def quantiles(values):
+def quantiles(values, digits=1):
     """Median and worst, as text."""
-    return f"{statistics.median(values):.1f} / {max(values):.1f}" if values else "-"
+    if not values:
+        return "-"
+    return f"{statistics.median(values):.{digits}f} / {max(values):.{digits}f}"
 
 
 def report_localization(rows):
     """One row for each variant."""
-    print("\n| | starts | right | near | wrong | not located | driven until bound to the map,"
-          " median / worst [m] | [s] | CPU until then [s] | error when settled, median / worst [m] |"
-          "\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("\n| | starts | right | near | wrong | not located | until the first constraint:"
+          " [m] | [s] | CPU [s] | until the pose is right: [m] | [s] | last error [m] |"
+          "\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for variant in dict.fromkeys(row["variant"] for row in rows):
         mine = [row for row in rows if row["variant"] == variant]
-        located = [row for row in mine if row["verdict"] != "not located"]
-        counts = [sum(row["verdict"] == verdict for row in mine)
-                  for verdict in ("right", "near", "wrong", "not located")]
-        print(f"| {variant} | {len(mine)} | " + " | ".join(map(str, counts)) + " | " + " | ".join(
-            quantiles([row[key] for row in located])
-            for key in ("meters", "seconds", "cpu_seconds")) +
-            f" | {statistics.median(r['error_m'] for r in located):.2f} /"
-            f" {max(r['error_m'] for r in located):.2f} |" if located else " | - | - | - | - |")
+        cells = [len(mine)] + [sum(row["verdict"] == verdict for row in mine)
+                               for verdict in ("right", "near", "wrong", "not located")]
+        for moment, keys in (("connected", ("meters", "seconds", "cpu_seconds")),
+                             ("settled", ("meters", "seconds"))):
+            cells += [quantiles([row[moment][key] for row in mine if moment in row])
+                      for key in keys]
+        cells.append(quantiles([row["last_error_m"] for row in mine if "last_error_m" in row], 2))
+        print(f"| {variant} | {' | '.join(map(str, cells))} |")
 
 
 def chosen(variants):
@@ -341,8 +351,9 @@ def main():
         # After each, as they take long.
         path.write_text(json.dumps(results, indent=1))
         row = results[-1]
-        print({k: row[k] for k in ("name", "variant", "start", "verdict", "meters", "error_m",
-                                   "cpu_seconds", "errors") if k in row}, flush=True)
+        print({k: row[k] for k in ("name", "variant", "start", "verdict", "connected",
+                                   "settled", "last_error_m", "said_error_m", "errors")
+               if k in row}, flush=True)
     return 0
 
 

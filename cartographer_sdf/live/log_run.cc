@@ -54,14 +54,6 @@ Time ToHostTime(const double unix_seconds) {
       cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000ll);
 }
 
-double FromHostTime(const Time time) {
-  return static_cast<double>(
-             cartographer::common::ToUniversal(time) -
-             cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds *
-                 10000000ll) *
-         1e-7;
-}
-
 transform::Rigid3d ToHostPose(const Rigid2& pose) {
   return transform::Rigid3d(
       {pose.translation().x(), pose.translation().y(), 0.},
@@ -104,8 +96,8 @@ double ProcessCpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// The host prints how a final optimisation goes; standard output is not its to
-// use.
+// The host prints how an optimisation goes that somebody waits for; standard
+// output is not its to use.
 class SilentStandardOutput {
  public:
   SilentStandardOutput() : buffer_(std::cout.rdbuf(nullptr)) {}
@@ -190,6 +182,7 @@ class Run {
                     static_cast<double>(scans.size()));
       }
     }
+    result_.num_scans = static_cast<int>(scans.size());
     result_.duration = scans.back().time - scans.front().time;
     result_.distance = distances_.back();
     result_.wall_seconds = clock_->wall();
@@ -199,7 +192,6 @@ class Run {
 
   void Finish() {
     map_builder_->FinishTrajectory(result_.trajectory_id);
-    const SilentStandardOutput silent;
     for (int k = 0; k < kMaxFinalOptimizations; ++k) {
       WaitForSearcher();
       const int num_injected = NumInjected();
@@ -262,23 +254,28 @@ class Run {
     const sensor::TimedPointCloudData host_scan = ToHostScan(recording_, scan);
     mapping::TrajectoryBuilderInterface* const builder =
         map_builder_->GetTrajectoryBuilder(result_.trajectory_id);
-    const double begin = WallSeconds();
     for (const MotionSample& sample : samples) {
       const Time time = ToHostTime(sample.time);
       if (uses_imu_) {
-        builder->AddSensorData(
-            kImuSensor,
-            sensor::ImuData{
-                time, {0., 0., kGravity}, {0., 0., sample.yaw_rate}});
+        AddSensorData(builder, kImuSensor,
+                      sensor::ImuData{
+                          time, {0., 0., kGravity}, {0., 0., sample.yaw_rate}});
       }
-      builder->AddSensorData(
-          kOdometrySensor,
+      AddSensorData(
+          builder, kOdometrySensor,
           sensor::OdometryData{time, ToHostPose(sample.T_odometry_robot)});
     }
-    const double middle = WallSeconds();
-    builder->AddSensorData(kRangeSensor, host_scan);
-    result_.motion_seconds.push_back(middle - begin);
-    result_.scan_seconds.push_back(WallSeconds() - middle);
+    AddSensorData(builder, kRangeSensor, host_scan);
+  }
+
+  // The host works on a scan as soon as all sensors have reached its time,
+  // whichever comes last.
+  template <typename SensorData>
+  void AddSensorData(mapping::TrajectoryBuilderInterface* const builder,
+                     const std::string& sensor, const SensorData& data) {
+    const double begin = WallSeconds();
+    builder->AddSensorData(sensor, data);
+    result_.sensor_seconds.push_back(WallSeconds() - begin);
   }
 
   // On the sensor thread.
@@ -357,6 +354,14 @@ absl::Status CheckWritable(const std::string& path) {
 
 }  // namespace
 
+double FromHostTime(const Time time) {
+  return static_cast<double>(
+             cartographer::common::ToUniversal(time) -
+             cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds *
+                 10000000ll) *
+         1e-7;
+}
+
 std::string Validate(const LogRunOptions& options) {
   if (options.real_time_factor.has_value() &&
       !(*options.real_time_factor > 0. && *options.real_time_factor <= 1e6)) {
@@ -382,6 +387,8 @@ absl::StatusOr<LogRunResult> RunLog(
       return status;
     }
   }
+  // Before the run, as its end prints, too.
+  const SilentStandardOutput silent;
   Run run(recording, options);
   if (absl::Status status = run.LoadMap(); !status.ok()) return status;
   // The host could not read a map again with a trajectory that has no nodes.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer/common/time.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/live/host_options.h"
 #include "cartographer_sdf/live/live_options.h"
@@ -21,6 +22,9 @@
 #include "cartographer_sdf/recording/recording.h"
 
 namespace cartographer_sdf {
+
+// Seconds of Unix time.
+[[nodiscard]] double FromHostTime(cartographer::common::Time time);
 
 struct LogRunOptions {
   HostOptions host;
@@ -69,10 +73,9 @@ struct LogRunResult {
   // None without a searcher.
   std::optional<LiveSummary> summary;
   std::vector<ClosureRecord> closures;
-  // Time that AddSensorData took for each scan, and for the odometry and yaw
-  // rates together before it [s].
-  std::vector<double> scan_seconds;
-  std::vector<double> motion_seconds;
+  int num_scans = 0;
+  // What each call of AddSensorData took, of any sensor [s].
+  std::vector<double> sensor_seconds;
   // Of the recording [s], [m].
   double duration = 0.;
   double distance = 0.;

@@ -31,8 +31,8 @@ constexpr int kNumFieldsAfterRanges = 9;
 constexpr int kMaxBeams = 100000;
 // Lines of kMaxBeams ranges with a few digits each.
 constexpr size_t kMaxLineLength = size_t{1} << 21;
-// Of all scans together: 2 GB, some years of a laser of 180 beams at 0.1 Hz.
-constexpr size_t kMaxRanges = size_t{1} << 29;
+// Of all scans together: 2 GB, two days of a laser of 180 beams at 10 Hz.
+constexpr size_t kMaxRanges = size_t{1} << 28;
 // No robot on earth is farther from where it started [m].
 constexpr double kMaxCoordinate = 1e7;
 // No robot with a laser drives farther between two scans [m]; Cartographer
@@ -138,7 +138,7 @@ absl::Status ParseNumber(const LineReader& reader,
 
 absl::Status ParseRanges(const LineReader& reader,
                          const std::vector<absl::string_view>& fields,
-                         std::vector<float>* const ranges) {
+                         std::vector<double>* const ranges) {
   ranges->reserve(fields.size());
   for (const absl::string_view field : fields) {
     double range = 0.;
@@ -147,8 +147,8 @@ absl::Status ParseRanges(const LineReader& reader,
       return status;
     }
     if (range < 0.) return reader.Error("a range is negative");
-    // More than a float holds is no return either.
-    ranges->push_back(static_cast<float>(std::min(range, kMaxCoordinate)));
+    // More is no return either.
+    ranges->push_back(std::min(range, kMaxCoordinate));
   }
   return absl::OkStatus();
 }

@@ -19,7 +19,7 @@ struct LaserScan {
   Rigid2 T_odometry_robot;
   // Of the beams in their order, not negative. Where nothing was hit, laser
   // scanners report a range beyond their reach.
-  std::vector<float> ranges;
+  std::vector<double> ranges;
 };
 
 struct Recording {

@@ -149,7 +149,7 @@ Json RunJson(const std::string& log, const LogRunOptions& options,
       {{"log", log},
        {"map",
         options.map_path.has_value() ? Json(*options.map_path) : Json::Null()},
-       {"scans", static_cast<int>(result.scan_seconds.size())},
+       {"scans", result.num_scans},
        {"nodes", static_cast<int>(result.nodes.size())},
        {"trajectory", result.trajectory_id},
        {"seconds", result.duration},
@@ -159,8 +159,7 @@ Json RunJson(const std::string& log, const LogRunOptions& options,
        {"final_wall_seconds", result.final_wall_seconds},
        {"final_cpu_seconds", result.final_cpu_seconds},
        {"max_delay_seconds", result.max_delay_seconds},
-       {"scan_milliseconds", LatencyJson(result.scan_seconds)},
-       {"motion_milliseconds", LatencyJson(result.motion_seconds)},
+       {"add_sensor_data_milliseconds", LatencyJson(result.sensor_seconds)},
        {"connected",
         connected == nullptr
             ? Json::Null()
@@ -238,17 +237,17 @@ std::vector<std::pair<std::string, std::string>> SummaryRows(
     const LogRunResult& result) {
   std::vector<std::pair<std::string, std::string>> rows = {
       {"Recording",
-       absl::StrFormat("%d scans, %.0f s, %.1f m", result.scan_seconds.size(),
+       absl::StrFormat("%d scans, %.0f s, %.1f m", result.num_scans,
                        result.duration, result.distance)},
       {"Nodes", absl::StrCat(result.nodes.size())},
       {"Time",
        absl::StrFormat("%.1f s, and %.1f s to finish; CPU %.1f s and %.1f s",
                        result.wall_seconds, result.final_wall_seconds,
                        result.cpu_seconds, result.final_cpu_seconds)},
-      {"AddSensorData of a scan",
+      {"AddSensorData",
        absl::StrFormat("median %.2f ms, 99 %% %.2f ms",
-                       kMilliseconds * Quantile(result.scan_seconds, 0.5),
-                       kMilliseconds * Quantile(result.scan_seconds, 0.99))}};
+                       kMilliseconds * Quantile(result.sensor_seconds, 0.5),
+                       kMilliseconds * Quantile(result.sensor_seconds, 0.99))}};
   if (result.max_delay_seconds > 0.) {
     rows.emplace_back(
         "Behind real time",
@@ -333,11 +332,11 @@ absl::Status WriteRunReport(const std::string& directory,
                         ClosureFateName(record.fate), ""});
   }
   HistogramPlot latency;
-  latency.title = "Time of AddSensorData for a scan";
+  latency.title = "Time of AddSensorData";
   latency.x.label = "ms";
-  const double longest = kMilliseconds * Quantile(result.scan_seconds, 0.99);
+  const double longest = kMilliseconds * Quantile(result.sensor_seconds, 0.99);
   latency.x.range = {0., std::max(longest, 1e-3)};
-  latency.series = {{"scans", InMilliseconds(result.scan_seconds)}};
+  latency.series = {{"calls", InMilliseconds(result.sensor_seconds)}};
   content.histograms.push_back(std::move(latency));
   content.options = FormatLiveOptions(options.live);
   // Makes the directory, too.

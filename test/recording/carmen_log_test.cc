@@ -60,7 +60,7 @@ TEST_F(CarmenLogTest, ReadsScansAndPassesOverOtherLines) {
   ASSERT_EQ(recording->scans.size(), 3u);
   const LaserScan& scan = recording->scans[1];
   EXPECT_EQ(scan.time, 1000000000.5);
-  EXPECT_THAT(scan.ranges, ElementsAre(1.5f, 80.f, 0.25f));
+  EXPECT_THAT(scan.ranges, ElementsAre(1.5, 80., 0.25));
   // Not the pose of the laser, which comes before it.
   EXPECT_EQ(scan.T_odometry_robot.translation(), Eigen::Vector2d(1., 2.));
   EXPECT_EQ(scan.T_odometry_robot.rotation(), 0.5);
