@@ -73,15 +73,27 @@ def run_log(work, **flags):
 
 
 def evaluate(work, name):
-    """Mean, median and 90 % of the loop relations or, without, of the nodes."""
-    table = work / "errors.csv"
+    """What evaluate says of the map, by the hand-verified relations and the truth.
+
+    The truth knows nodes by their index in NAME_open_loop.pbstream; here they are found by
+    their time, as another scan may be kept now and then.
+    """
+    _, known_times = read_pose_graph(DATA / f"{name}_open_loop.pbstream")
+    known = {round(known_times[i], 3): pose
+             for i, pose in read_truth(DATA / f"{name}.truth.csv", "node").items()
+             if i in known_times}
+    _, times = read_pose_graph(work / "map.pbstream")
+    truth = work / "truth.csv"
+    with open(truth, "w", encoding="utf-8") as file:
+        file.write("kind,trajectory,index,x,y,yaw\n")
+        for i, time in times.items():
+            if round(time, 3) in known:
+                file.write("node,0,%d,%.6f,%.6f,%.6f\n" % (i, *known[round(time, 3)]))
     command = [str(BUILD / "cartographer_sdf"), "evaluate", "--input", str(work / "map.pbstream"),
-               "--csv", str(table)]
+               "--truth", str(truth)]
     if (DATA / f"{name}.relations").exists():
         command += ["--relations", str(DATA / f"{name}.relations")]
-    command += ["--truth", str(DATA / f"{name}.truth.csv")]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    return done.stdout
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
 
 
 def measure_mapping(results, names):
@@ -265,7 +277,7 @@ def measure_localization(results, num_starts, seconds, factor):
 def report_mapping(rows):
     """A table for each recording."""
     for name in dict.fromkeys(row["name"] for row in rows):
-        print(f"\n### {name}\n\n| | wall [s] | CPU [s] | of it the searcher [s] | closures injected |"
+        print(f"\n### {name}\n\n| | wall [s] | CPU [s] | of it the searcher [s] | injected |"
               " AddSensorData, mean / p99 [ms] | added by the searcher, mean / p99 [ms] |"
               "\n| --- | --- | --- | --- | --- | --- | --- |")
         mine = [row for row in rows if row["name"] == name]

@@ -115,6 +115,7 @@ Json LocalizationJson(const LocalizationMoment& moment, const double begin) {
   return Json::Object({{"trajectory", result.trajectory_id},
                        {"located", result.located},
                        {"reason", LocalizationReasonName(result.reason)},
+                       {"time", FromHostTime(result.time)},
                        {"T_map_node", result.T_map_node.has_value()
                                           ? PoseJson(*result.T_map_node)
                                           : Json::Null()},

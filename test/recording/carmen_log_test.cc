@@ -41,8 +41,9 @@ class CarmenLogTest : public ::testing::Test {
   std::string Compress(const std::string& content) {
     const std::string path = directory_.File("some.log.gz");
     gzFile file = gzopen(path.c_str(), "wb");
-    EXPECT_EQ(gzwrite(file, content.data(), content.size()),
-              static_cast<int>(content.size()));
+    EXPECT_EQ(
+        gzwrite(file, content.data(), static_cast<unsigned>(content.size())),
+        static_cast<int>(content.size()));
     gzclose(file);
     return path;
   }
@@ -131,7 +132,7 @@ TEST_F(CarmenLogTest, ErrorsNameTheFileAndTheLine) {
            {"FLASER 0 0 0 0 0 0 0 1 h 0", ":1: the number of beams"},
            {"FLASER -3 1", "the number of beams"},
            {"FLASER 99999999999 1", "the number of beams"},
-           {"FLASER 3 1 2 3 4", ":1: 5 fields instead of 14"},
+           {"FLASER 3 1 2 3 4", ":1: 6 fields instead of 14"},
            {"FLASER 1 -1 0 0 0 0 0 0 1 h 0", "a range is negative"},
            {"FLASER 1 nan 0 0 0 0 0 0 1 h 0", "no finite number"},
            {"FLASER 1 1 0 0 0 1e400 0 0 1 h 0", "no finite number"},

@@ -30,7 +30,7 @@ TEST(MotionTest, InterpolatesTheShorterWayAround) {
   EXPECT_NEAR(samples[1].T_odometry_robot.translation().y(), 3., kTolerance);
   for (size_t k = 0; k < samples.size(); ++k) {
     EXPECT_NEAR(NormalizeAngle(samples[k].T_odometry_robot.rotation() - 3.),
-                turn * (k + 1.) / 4., kTolerance);
+                turn * (static_cast<double>(k) + 1.) / 4., kTolerance);
     EXPECT_NEAR(samples[k].yaw_rate, turn / 0.1, 1e-6);
   }
   EXPECT_EQ(samples.back().time, 10.1);
