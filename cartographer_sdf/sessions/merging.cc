@@ -130,6 +130,7 @@ class Merger {
     clock_.Begin("check");
     FindFolds();
     CheckResult();
+    RemoveScanSubmaps();
     clock_.End();
     return absl::OkStatus();
   }
@@ -300,6 +301,24 @@ class Merger {
     }
   }
 
+  // Submaps that are in no file can't be written.
+  void RemoveScanSubmaps() {
+    std::set<SubmapId> scan_submaps;
+    for (size_t k = 0; k < part_sessions_.size(); ++k) {
+      for (const auto& [id, grid] : sessions_[part_sessions_[k]]->scan_grids) {
+        scan_submaps.insert(Renamed(k, id));
+        result_.pose_graph.submap_poses.erase(Renamed(k, id));
+      }
+    }
+    std::vector<Constraint>& constraints = result_.pose_graph.constraints;
+    constraints.erase(
+        std::remove_if(constraints.begin(), constraints.end(),
+                       [&](const Constraint& constraint) {
+                         return scan_submaps.count(constraint.submap) > 0;
+                       }),
+        constraints.end());
+  }
+
   void CheckResult() {
     Groups groups(sessions_.size());
     for (const ClosureOutcome& outcome : result_.closures) {
@@ -387,11 +406,11 @@ absl::StatusOr<MergingResult> MergeSessions(
   StageClock clock(on_stage, &result.stage_seconds);
   std::vector<Session> sessions;
   for (const std::string& path : paths) {
-    absl::StatusOr<DescribedMap> map =
-        DescribeMap(stages.place, stages.match, path, executor,
-                    clock.Begin(absl::StrCat("read and describe ", path)));
-    if (!map.ok()) return map.status();
-    sessions.push_back({path, *std::move(map)});
+    absl::StatusOr<Session> session =
+        DescribeSession(relocalization, stages, path, std::nullopt, executor,
+                        clock.Begin(absl::StrCat("read and describe ", path)));
+    if (!session.ok()) return session.status();
+    sessions.push_back(*std::move(session));
     result.sessions.push_back({path, result.sessions.size(), {}});
   }
   const int num_freezable =

@@ -30,12 +30,6 @@ struct MergingOptions {
 };
 [[nodiscard]] std::string Validate(const MergingOptions& options);
 
-// A saved map that takes part. Ids are those of its file.
-struct Session {
-  std::string path;
-  DescribedMap map;
-};
-
 // What is known of two sessions: where the second lies in the first.
 struct SessionLink {
   size_t first = 0;  // indices of sessions, first < second
@@ -57,8 +51,12 @@ struct MergingResult {
   std::vector<SessionLink> links;       // all pairs
   // Of those that are in the merged map, with their new numbers.
   std::vector<MapPart> parts;
-  MapState state;        // as read, under the new numbers
-  PoseGraph pose_graph;  // optimised, with the new constraints at the end
+  // As read, under the new numbers; places that are made of scans are submaps
+  // here.
+  MapState state;
+  // Optimised, with the new constraints at the end; of the submaps of the files
+  // alone, and so for WriteJoinedMap.
+  PoseGraph pose_graph;
   std::vector<ClosureOutcome> closures;
   std::map<SubmapId, Tear> torn_submaps;
   std::vector<OptimizationSummary> optimizations;

@@ -263,25 +263,57 @@ Relocalization Relocalize(const RelocalizationOptions& options,
   return Relocalizer(options, stages, map, query, executor, on_stage).Run();
 }
 
-absl::StatusOr<ScanMap> DescribeQuery(const RelocalizationOptions& options,
-                                      const LoopClosingOptions& stages,
-                                      const std::string& path,
-                                      const std::optional<TimeWindow>& window,
-                                      const Executor& executor,
-                                      const ProgressCallback& on_progress) {
-  absl::StatusOr<MapState> state;
+absl::StatusOr<Session> DescribeSession(const RelocalizationOptions& options,
+                                        const LoopClosingOptions& stages,
+                                        const std::string& path,
+                                        const std::optional<TimeWindow>& window,
+                                        const Executor& executor,
+                                        const ProgressCallback& on_progress) {
   if (window) {
-    state = ReadMap(path, {}, on_progress);
-  } else {
-    absl::StatusOr<DescribedMap> map =
-        DescribeMap(stages.place, stages.match, path, executor, on_progress);
-    if (!map.ok()) return map.status();
-    if (!map->state.submaps.empty()) return ScanMap{*std::move(map), {}};
-    state = std::move(map->state);
+    const absl::StatusOr<MapState> state = ReadMap(path, {}, on_progress);
+    if (!state.ok()) return state.status();
+    absl::StatusOr<ScanMap> scans =
+        DescribeScans(options.scan_places, stages.place, stages.match, path,
+                      *state, *window, executor);
+    if (!scans.ok()) return scans.status();
+    return Session{path, std::move(scans->map), std::move(scans->grids)};
   }
-  if (!state.ok()) return state.status();
-  return DescribeScans(options.scan_places, stages.place, stages.match, path,
-                       *state, window.value_or(TimeWindow()), executor);
+  absl::StatusOr<DescribedMap> map =
+      DescribeMap(stages.place, stages.match, path, executor, on_progress);
+  if (!map.ok()) return map.status();
+  std::set<int> without_submaps(map->state.trajectories.begin(),
+                                map->state.trajectories.end());
+  for (const auto& [id, submap] : map->state.submaps) {
+    without_submaps.erase(id.trajectory);
+  }
+  Session session{path, *std::move(map), {}};
+  if (without_submaps.empty()) return session;
+  absl::StatusOr<ScanMap> scans =
+      DescribeScans(options.scan_places, stages.place, stages.match, path,
+                    session.map.state, TimeWindow(), executor, without_submaps);
+  if (!scans.ok()) return scans.status();
+  // A submap may be in the pose graph without a record of its own; it is not
+  // replaced.
+  std::set<SubmapId> added;
+  PoseGraph& graph = session.map.state.pose_graph;
+  for (const auto& [id, pose] : scans->map.state.pose_graph.submap_poses) {
+    if (!graph.submap_poses.emplace(id, pose).second) continue;
+    added.insert(id);
+    session.map.state.submaps[id] = scans->map.state.submaps.at(id);
+  }
+  for (const Constraint& constraint : scans->map.state.pose_graph.constraints) {
+    if (added.count(constraint.submap) > 0) {
+      graph.constraints.push_back(constraint);
+    }
+  }
+  for (const SubmapId& id : added) {
+    session.scan_grids.emplace(id, std::move(scans->grids.at(id)));
+    const auto place = scans->map.places.find(id);
+    if (place != scans->map.places.end()) {
+      session.map.places.emplace(id, std::move(place->second));
+    }
+  }
+  return session;
 }
 
 }  // namespace cartographer_sdf

@@ -7,6 +7,7 @@
 #ifndef CARTOGRAPHER_SDF_SESSIONS_RELOCALIZATION_H_
 #define CARTOGRAPHER_SDF_SESSIONS_RELOCALIZATION_H_
 
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -76,10 +77,18 @@ struct Relocalization {
                                         const Executor& executor,
                                         const StageCallback& on_stage = {});
 
-// The query of a file: all submaps that it holds, or with a window, and where
-// it holds none, places made of its scans; only these have grids. Fails as
-// ReadMap does.
-[[nodiscard]] absl::StatusOr<ScanMap> DescribeQuery(
+// A saved map, or a stretch of one, that takes part. Ids are those of its file.
+struct Session {
+  std::string path;
+  DescribedMap map;
+  // Of the submaps that are not in the file but were made of scans.
+  std::map<SubmapId, OccupancyGrid> scan_grids;
+};
+
+// All submaps that a file holds, and places made of the scans of trajectories
+// of which it holds none; with a window, places made of the scans in it alone.
+// See scan_places.h. Fails as ReadMap does.
+[[nodiscard]] absl::StatusOr<Session> DescribeSession(
     const RelocalizationOptions& options, const LoopClosingOptions& stages,
     const std::string& path, const std::optional<TimeWindow>& window,
     const Executor& executor, const ProgressCallback& on_progress = {});

@@ -132,7 +132,8 @@ std::string Validate(const ScanPlaceOptions& options) {
 absl::StatusOr<ScanMap> DescribeScans(
     const ScanPlaceOptions& options, const PlaceOptions& place_options,
     const MatchOptions& match_options, const std::string& path,
-    const MapState& map, const TimeWindow& window, const Executor& executor) {
+    const MapState& map, const TimeWindow& window, const Executor& executor,
+    const std::optional<std::set<int>>& trajectories) {
   CHECK_EQ(Validate(options), "");
   ScanMap scan_map;
   DescribedMap& result = scan_map.map;
@@ -141,7 +142,9 @@ absl::StatusOr<ScanMap> DescribeScans(
   result.state.trajectories = map.trajectories;
   result.state.pose_graph.nodes = NodesIn(window, map.pose_graph.nodes);
   std::set<NodeId> ids;
-  for (const auto& [id, node] : result.state.pose_graph.nodes) ids.insert(id);
+  for (const auto& [id, node] : result.state.pose_graph.nodes) {
+    if (!trajectories || trajectories->count(id.trajectory) > 0) ids.insert(id);
+  }
   if (ids.empty()) return scan_map;
   const absl::StatusOr<std::map<NodeId, PointCloud2>> clouds =
       ReadPointClouds(path, ids);

@@ -10,6 +10,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -44,11 +45,13 @@ struct ScanMap {
   std::map<SubmapId, OccupancyGrid> grids;
 };
 
-// `path` is the file of `map`.
+// `path` is the file of `map`. Trajectories other than the given ones, if any
+// are given, are left out.
 [[nodiscard]] absl::StatusOr<ScanMap> DescribeScans(
     const ScanPlaceOptions& options, const PlaceOptions& place_options,
     const MatchOptions& match_options, const std::string& path,
-    const MapState& map, const TimeWindow& window, const Executor& executor);
+    const MapState& map, const TimeWindow& window, const Executor& executor,
+    const std::optional<std::set<int>>& trajectories = {});
 
 }  // namespace cartographer_sdf
 

@@ -13,10 +13,11 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
-DEFINE_string(map, "",
-              "relocalize: the map in which to look, a .pbstream. simulate: the "
-              "floor plan to drive through, a PGM with dark walls; an office is "
-              "invented if empty.");
+DEFINE_string(
+    map, "",
+    "relocalize: the map in which to look, a .pbstream. simulate: the "
+    "floor plan to drive through, a PGM with dark walls; an office is "
+    "invented if empty.");
 DEFINE_string(query, "",
               "Another map, whose submaps are searched in those of --input or "
               "--map. In match, none if empty: the submaps of --input in each "

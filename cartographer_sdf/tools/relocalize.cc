@@ -203,27 +203,26 @@ absl::Status RunRelocalize() {
   if (IsGiven("num_starts")) {
     return RunManyStarts(*options, *map, executor, &progress);
   }
-  absl::StatusOr<ScanMap> query = DescribeQuery(
+  const absl::StatusOr<Session> query = DescribeSession(
       options->relocalization, options->loop_closing, FLAGS_query, *window,
       executor, progress.Begin("read and describe the query"));
   if (!query.ok()) return query.status();
   const Relocalization result =
       Relocalize(options->relocalization, options->loop_closing, *map,
                  query->map, executor, progress.Callback());
-  const Session map_session{FLAGS_map, *std::move(map)};
+  const Session map_session{FLAGS_map, *std::move(map), {}};
   absl::Status status;
   if (!FLAGS_result.empty()) {
     status = WriteWholeFile(FLAGS_result, FormatRelocalization(result));
   }
   if (status.ok() && !FLAGS_report.empty()) {
-    status = WriteRelocalizationReport(FLAGS_report, *options, map_session,
-                                       *query, FLAGS_query, result,
-                                       progress.Begin("report"));
+    status =
+        WriteRelocalizationReport(FLAGS_report, *options, map_session, *query,
+                                  result, progress.Begin("report"));
   }
   if (status.ok() && !FLAGS_output.empty()) {
-    status = WriteCombinedMap(*options, map_session,
-                              Session{FLAGS_query, std::move(query->map)},
-                              result, executor, &progress);
+    status = WriteCombinedMap(*options, map_session, *query, result, executor,
+                              &progress);
   }
   if (!status.ok()) return status;
   PrintSummary(result);

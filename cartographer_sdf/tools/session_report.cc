@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <memory>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -33,8 +33,8 @@ struct Layer {
   std::string path;
   std::map<SubmapId, PlacedGrid> submaps;  // in the frame of the picture
   std::map<int, std::vector<Eigen::Vector2d>> driven;
-  // Those of the file where it is empty.
-  std::map<SubmapId, OccupancyGrid> grids;
+  // Of submaps that are not in the file.
+  std::map<SubmapId, OccupancyGrid> scan_grids;
 };
 
 // A pair of submaps of layers, as shown.
@@ -64,10 +64,13 @@ Layer MakeLayer(const std::string& path, const MapState& state,
   return layer;
 }
 
-Eigen::Vector2d MiddleInPicture(const Layer& layer, const SubmapId& id) {
-  const PlacedGrid& submap = layer.submaps.at(id);
-  const CellGeometry& geometry = submap.geometry;
-  return submap.T_map_submap * geometry.T_submap_grid *
+// None where the submap is not shown.
+std::optional<Eigen::Vector2d> MiddleInPicture(const Layer& layer,
+                                               const SubmapId& id) {
+  const auto submap = layer.submaps.find(id);
+  if (submap == layer.submaps.end()) return std::nullopt;
+  const CellGeometry& geometry = submap->second.geometry;
+  return submap->second.T_map_submap * geometry.T_submap_grid *
          Eigen::Vector2d(0.5 * geometry.resolution *
                          geometry.size.matrix().cast<double>());
 }
@@ -115,10 +118,11 @@ class OverlayReport {
     }
     // What matters most is drawn last.
     for (auto match = matches_.rbegin(); match != matches_.rend(); ++match) {
-      DrawLink(
-          MiddleInPicture(layers_[match->reference_layer], match->reference),
-          MiddleInPicture(layers_[match->query_layer], match->query), frame,
-          match->color, &picture);
+      const std::optional<Eigen::Vector2d> from =
+          MiddleInPicture(layers_[match->reference_layer], match->reference);
+      const std::optional<Eigen::Vector2d> to =
+          MiddleInPicture(layers_[match->query_layer], match->query);
+      if (from && to) DrawLink(*from, *to, frame, match->color, &picture);
     }
     DrawScaleBar(frame, &picture);
     content->maps.push_back({caption, picture.EncodePng()});
@@ -139,14 +143,16 @@ class OverlayReport {
       painter->AddSubmap(grid, submap->second.T_map_submap);
       if (wanted_.count({k, id}) > 0) grids_.emplace(std::pair(k, id), grid);
     };
-    if (!layer.grids.empty()) {
-      for (const auto& [id, grid] : layer.grids) add(id, grid);
+    for (const auto& [id, grid] : layer.scan_grids) add(id, grid);
+    if (layer.scan_grids.size() == layer.submaps.size()) {
       return absl::OkStatus();
     }
     return ReadMap(
                layer.path,
-               [&add](const SubmapId& id, const SubmapSummary&,
-                      const OccupancyGrid& grid) { add(id, grid); },
+               [&](const SubmapId& id, const SubmapSummary&,
+                   const OccupancyGrid& grid) {
+                 if (layer.scan_grids.count(id) == 0) add(id, grid);
+               },
                on_progress)
         .status();
   }
@@ -243,9 +249,10 @@ std::vector<Layer> LayersOf(const MergingResult& result) {
            submap != result.state.submaps.end() &&
            submap->first.trajectory == number;
            ++submap) {
+        const auto pose = result.pose_graph.submap_poses.find(submap->first);
+        if (pose == result.pose_graph.submap_poses.end()) continue;
         layer.submaps[{trajectory, submap->first.index}] = {
-            submap->second.geometry,
-            result.pose_graph.submap_poses.at(submap->first)};
+            submap->second.geometry, pose->second};
       }
       for (auto node = result.pose_graph.nodes.lower_bound({number, 0});
            node != result.pose_graph.nodes.end() &&
@@ -307,12 +314,11 @@ std::vector<ShownMatch> MatchesOf(const MergingResult& result) {
 
 absl::Status WriteRelocalizationReport(const std::string& directory,
                                        const Options& options,
-                                       const Session& map, const ScanMap& query,
-                                       const std::string& query_path,
+                                       const Session& map, const Session& query,
                                        const Relocalization& result,
                                        const ProgressCallback& on_progress) {
   ReportContent content;
-  content.title = absl::StrCat("Where is ", FileName(query_path), " in ",
+  content.title = absl::StrCat("Where is ", FileName(query.path), " in ",
                                FileName(map.path), "?");
   content.subtitle = "Found by the shape of free space, without a pose prior.";
   content.summary = {
@@ -338,8 +344,8 @@ absl::Status WriteRelocalizationReport(const std::string& directory,
           : std::nullopt;
   std::vector<Layer> layers = {MakeLayer(map.path, map.map.state, Rigid2())};
   if (T_map_query) {
-    layers.push_back(MakeLayer(query_path, query.map.state, *T_map_query));
-    layers.back().grids = query.grids;
+    layers.push_back(MakeLayer(query.path, query.map.state, *T_map_query));
+    layers.back().scan_grids = query.scan_grids;
   }
   const absl::Status status =
       OverlayReport(options, std::move(layers), MatchesOf(result))

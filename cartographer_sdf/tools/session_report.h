@@ -16,8 +16,8 @@ namespace cartographer_sdf {
 // found, or would best fit; the matches, and where they contradict.
 [[nodiscard]] absl::Status WriteRelocalizationReport(
     const std::string& directory, const Options& options, const Session& map,
-    const ScanMap& query, const std::string& query_path,
-    const Relocalization& result, const ProgressCallback& on_progress);
+    const Session& query, const Relocalization& result,
+    const ProgressCallback& on_progress);
 
 // The page of merge --report.
 [[nodiscard]] absl::Status WriteMergingReport(

@@ -232,8 +232,8 @@ TEST_F(JoinedMapFileTest, MovesTheOriginOfGps) {
 
 TEST_F(JoinedMapFileTest, ReadsPointCloudsOfAllParts) {
   Join();
-  const auto clouds = ReadJoinedPointClouds(
-      parts_, {NodeId{0, 1}, NodeId{1, 2}, NodeId{7, 0}});
+  const auto clouds =
+      ReadJoinedPointClouds(parts_, {NodeId{0, 1}, NodeId{1, 2}, NodeId{7, 0}});
   ASSERT_TRUE(clouds.ok());
   ASSERT_EQ(clouds->size(), 2u);
   EXPECT_NEAR(clouds->at({0, 1}).at(0).x(), 1., 1e-3);
@@ -266,9 +266,10 @@ TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {
   WriteFile(paths_[0], bytes.substr(0, bytes.size() - 5));
   expect_error(joined.pose_graph, "truncated");
   WriteFile(paths_[0], bytes);
-  EXPECT_THAT(std::string(
-                  WriteJoinedMap(parts_, joined.pose_graph, paths_[1]).message()),
-              HasSubstr("is one of the maps that are read"));
+  EXPECT_THAT(
+      std::string(
+          WriteJoinedMap(parts_, joined.pose_graph, paths_[1]).message()),
+      HasSubstr("is one of the maps that are read"));
 }
 
 }  // namespace

@@ -25,8 +25,8 @@ std::string Renumbered(const std::string& record, const int trajectory) {
 TEST(WithTrajectoryTest, ReplacesTheNumberInPlace) {
   // A node (field 4): its id (1) with trajectory (1) 2 and index (2) 9; an
   // unknown field (1000); node data (5) that is empty.
-  const std::string record("\x22\x0c\x0a\x04\x08\x02\x10\x09\xc2\x3e\x01x\x2a\x00",
-                           14);
+  const std::string record(
+      "\x22\x0c\x0a\x04\x08\x02\x10\x09\xc2\x3e\x01x\x2a\x00", 14);
   const std::string expected(
       "\x22\x0d\x0a\x05\x08\xac\x02\x10\x09\xc2\x3e\x01x\x2a\x00", 15);
   EXPECT_EQ(*TrajectoryOfRecord(Parse(record)), 2);

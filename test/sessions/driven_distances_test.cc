@@ -34,8 +34,8 @@ TEST(DrivenDistancesTest, ClosedLoopsAreShortCuts) {
   MapState state;
   testing::AddStraightDrive(0, Rigid2(), 31, 4., &state);
   testing::AddStraightDrive(1, Rigid2(), 3, 4., &state);
-  // Node 29 is in submap 29; it was seen again from submap 1, and from the other
-  // trajectory.
+  // Node 29 is in submap 29; it was seen again from submap 1, and from the
+  // other trajectory.
   for (const SubmapId& submap : {SubmapId{0, 1}, SubmapId{1, 2}}) {
     state.pose_graph.constraints.push_back(
         {submap, {0, 29}, Rigid2(), 1., 1., Constraint::Tag::kInterSubmap});

@@ -17,7 +17,8 @@
 #include "gtest/gtest.h"
 #include "test/testing/two_offices.h"
 
-// --- The example. -------------------------------------------------------------
+// --- The example.
+// -------------------------------------------------------------
 
 namespace example {
 
@@ -34,9 +35,8 @@ class RelocalizationService {
   // The map is read and described once, which takes the most time.
   static absl::StatusOr<RelocalizationService> Open(const std::string& map) {
     RelocalizationService service;
-    absl::StatusOr<DescribedMap> described =
-        DescribeMap(service.stages_.place, service.stages_.match, map,
-                    &RunInOrder);
+    absl::StatusOr<DescribedMap> described = DescribeMap(
+        service.stages_.place, service.stages_.match, map, &RunInOrder);
     if (!described.ok()) return described.status();
     service.map_ = *std::move(described);
     return service;
@@ -47,9 +47,8 @@ class RelocalizationService {
   absl::StatusOr<std::optional<Rigid2>> WhereIs(const std::string& drive,
                                                 const double first_seconds,
                                                 std::string* const reason) {
-    const absl::StatusOr<ScanMap> query =
-        DescribeQuery(options_, stages_, drive, TimeWindow{0., first_seconds},
-                      &RunInOrder);
+    const absl::StatusOr<Session> query = DescribeSession(
+        options_, stages_, drive, TimeWindow{0., first_seconds}, &RunInOrder);
     if (!query.ok()) return query.status();
     const Relocalization result =
         Relocalize(options_, stages_, map_, query->map, &RunInOrder);
@@ -106,7 +105,9 @@ TEST_F(ExampleTest, FindsADriveInItsBuildingOnly) {
   // Both drives begin in their local frames; the first nodes tell where. What
   // the map has drifted until the place that was recognised comes on top.
   const Rigid2 truth =
-      offices_->TruthOf(offices_->Morning()).T_world_tracking.at({0, 0}).Inverse() *
+      offices_->TruthOf(offices_->Morning())
+          .T_world_tracking.at({0, 0})
+          .Inverse() *
       offices_->TruthOf(offices_->Evening()).T_world_tracking.at({0, 0});
   const Rigid2 error = truth.Inverse() * **here;
   EXPECT_LT(error.translation().norm(), 1.5);
@@ -139,9 +140,8 @@ TEST_F(ExampleTest, MergesWhatIsConnected) {
                              morning.T_world_tracking.at({0, 0}).Inverse();
   double sum = 0.;
   for (const auto& [id, node] : merged->pose_graph.nodes) {
-    const Rigid2& T_world_node =
-        (id.trajectory == 0 ? morning : evening)
-            .T_world_tracking.at({0, id.index});
+    const Rigid2& T_world_node = (id.trajectory == 0 ? morning : evening)
+                                     .T_world_tracking.at({0, id.index});
     sum += (node.T_map_node.translation() -
             (T_map_world * T_world_node).translation())
                .norm();

@@ -14,10 +14,10 @@
 namespace cartographer_sdf {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::SizeIs;
 using testing::ClosureOnWay;
+using ::testing::ElementsAre;
 using testing::IsPoseNear;
+using ::testing::SizeIs;
 
 constexpr double kSpacing = 12.;  // [m], beyond what counts as one place
 
@@ -53,8 +53,7 @@ TEST_F(PlacementTest, VotesThatAgreeAreOne) {
       Find({Closure(0, 0, 0.05), Closure(1, 1, -0.05), Closure(2, 1, 0.),
             Closure(3, 3, 0.)});
   ASSERT_THAT(placements, SizeIs(1));
-  EXPECT_THAT(placements[0].T_map_query,
-              IsPoseNear(T_map_query_, 0.06, 0.01));
+  EXPECT_THAT(placements[0].T_map_query, IsPoseNear(T_map_query_, 0.06, 0.01));
   EXPECT_THAT(placements[0].votes, ElementsAre(0, 1, 2, 3));
   // Three places of the query; the second has two votes.
   EXPECT_NEAR(placements[0].score, 15., 1e-9);
@@ -70,9 +69,8 @@ TEST_F(PlacementTest, PlacesNearEachOtherTellPartlyTheSame) {
         LoopClosure closure = ClosureOnWay({0, 0}, {0, 1}, 2.5, 0., 4.);
         return closure;
       }()};
-  const std::vector<Placement> placements =
-      FindPlacements(PlacementOptions(), ConsistencyOptions(),
-                     MapPair(map_, query), closures);
+  const std::vector<Placement> placements = FindPlacements(
+      PlacementOptions(), ConsistencyOptions(), MapPair(map_, query), closures);
   ASSERT_THAT(placements, SizeIs(1));
   // A quarter of the second.
   EXPECT_NEAR(placements[0].score, 6. + 0.25 * 4., 1e-9);
@@ -89,8 +87,7 @@ TEST_F(PlacementTest, TwinsAreRivals) {
   const std::vector<Placement> placements =
       Find({Closure(1, 1, 0.), Closure(2, 1, kSpacing, 4.5)});
   ASSERT_THAT(placements, SizeIs(2));
-  EXPECT_THAT(placements[0].T_map_query,
-              IsPoseNear(T_map_query_, 1e-6, 1e-6));
+  EXPECT_THAT(placements[0].T_map_query, IsPoseNear(T_map_query_, 1e-6, 1e-6));
   EXPECT_FALSE(placements[0].is_rival);
   EXPECT_TRUE(placements[1].is_rival);
   EXPECT_NEAR(placements[1].score, 4.5, 1e-9);

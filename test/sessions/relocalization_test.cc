@@ -32,11 +32,11 @@ class RelocalizationTest : public ::testing::Test {
     delete evening_;
     delete elsewhere_;
   }
-  static ScanMap Describe(const std::string& path,
+  static Session Describe(const std::string& path,
                           const std::optional<TimeWindow>& window = {}) {
-    absl::StatusOr<ScanMap> query =
-        DescribeQuery(RelocalizationOptions(), LoopClosingOptions(), path,
-                      window, ThreadExecutor(2));
+    absl::StatusOr<Session> query =
+        DescribeSession(RelocalizationOptions(), LoopClosingOptions(), path,
+                        window, ThreadExecutor(2));
     CHECK(query.ok()) << query.status();
     return *std::move(query);
   }
@@ -58,8 +58,7 @@ DescribedMap* RelocalizationTest::elsewhere_;
 
 TEST_F(RelocalizationTest, FindsAWholeSession) {
   const Relocalization result = Find(*morning_, *evening_);
-  ASSERT_EQ(result.verdict, RelocalizationVerdict::kLocalized)
-      << result.reason;
+  ASSERT_EQ(result.verdict, RelocalizationVerdict::kLocalized) << result.reason;
   ASSERT_TRUE(result.T_map_query.has_value());
   EXPECT_GE(*result.score, PlacementOptions().min_score);
   EXPECT_EQ(result.num_agreeing,
@@ -115,8 +114,7 @@ TEST_F(RelocalizationTest, TwiceTheSamePlaceIsAmbiguous) {
   PoseGraph& graph = twins.state.pose_graph;
   for (const auto& [id, submap] : morning_->state.submaps) {
     twins.state.submaps[{1, id.index}] = submap;
-    graph.submap_poses[{1, id.index}] =
-        T_map_copy * graph.submap_poses.at(id);
+    graph.submap_poses[{1, id.index}] = T_map_copy * graph.submap_poses.at(id);
   }
   for (const auto& [id, node] : morning_->state.pose_graph.nodes) {
     Node copy = node;
@@ -128,8 +126,7 @@ TEST_F(RelocalizationTest, TwiceTheSamePlaceIsAmbiguous) {
     graph.constraints.push_back(constraint);
   }
   const Relocalization result = Find(twins, *evening_);
-  EXPECT_EQ(result.verdict, RelocalizationVerdict::kAmbiguous)
-      << result.reason;
+  EXPECT_EQ(result.verdict, RelocalizationVerdict::kAmbiguous) << result.reason;
   EXPECT_FALSE(result.T_map_query.has_value());
   EXPECT_THAT(result.reason, HasSubstr("ambiguous between"));
   ASSERT_TRUE(result.runner_up_score.has_value());
@@ -147,7 +144,7 @@ TEST_F(RelocalizationTest, TooLittleIsRefused) {
 }
 
 TEST_F(RelocalizationTest, MakesPlacesOfTheFirstSeconds) {
-  const ScanMap query = Describe(offices_->Evening(), TimeWindow{10., 100.});
+  const Session query = Describe(offices_->Evening(), TimeWindow{10., 100.});
   const std::map<NodeId, Node>& all = evening_->state.pose_graph.nodes;
   const int64_t begin = all.at({0, 0}).time;
   size_t num_expected = 0;
@@ -157,18 +154,17 @@ TEST_F(RelocalizationTest, MakesPlacesOfTheFirstSeconds) {
   }
   EXPECT_EQ(query.map.state.pose_graph.nodes.size(), num_expected);
   ASSERT_FALSE(query.map.places.empty());
-  EXPECT_EQ(query.grids.size(), query.map.state.submaps.size());
+  EXPECT_EQ(query.scan_grids.size(), query.map.state.submaps.size());
   // Each node is in one of the places at least, where local SLAM says.
   std::set<NodeId> held;
-  for (const Constraint& constraint :
-       query.map.state.pose_graph.constraints) {
+  for (const Constraint& constraint : query.map.state.pose_graph.constraints) {
     held.insert(constraint.node);
     const Rigid2 T_map_node =
         query.map.state.pose_graph.submap_poses.at(constraint.submap) *
         constraint.T_submap_node;
-    EXPECT_THAT(T_map_node,
-                testing::IsPoseNear(all.at(constraint.node).T_map_node, 1e-6,
-                                    1e-6));
+    EXPECT_THAT(
+        T_map_node,
+        testing::IsPoseNear(all.at(constraint.node).T_map_node, 1e-6, 1e-6));
   }
   EXPECT_EQ(held.size(), num_expected);
 
@@ -181,7 +177,7 @@ TEST_F(RelocalizationTest, MakesPlacesOfTheFirstSeconds) {
 }
 
 TEST_F(RelocalizationTest, AWindowWithoutNodesHasNoPlaces) {
-  const ScanMap query = Describe(offices_->Evening(), TimeWindow{1e6, 10.});
+  const Session query = Describe(offices_->Evening(), TimeWindow{1e6, 10.});
   EXPECT_TRUE(query.map.places.empty());
   EXPECT_TRUE(query.map.state.pose_graph.nodes.empty());
 }

@@ -29,15 +29,19 @@ inline void AddStraightDrive(const int trajectory, const Rigid2& T_map_way,
     node.T_map_node = pose;
     node.T_local_node = pose;
     state->pose_graph.constraints.push_back(
-        Constraint{{trajectory, i}, {trajectory, i},
-                   Rigid2(),        1.,
-                   1.,              Constraint::Tag::kIntraSubmap});
+        Constraint{{trajectory, i},
+                   {trajectory, i},
+                   Rigid2(),
+                   1.,
+                   1.,
+                   Constraint::Tag::kIntraSubmap});
   }
   state->trajectories.push_back(trajectory);
   ++state->num_trajectories;
 }
 
-// Of submaps of two such drives along the same way; `offset` [m] from the truth.
+// Of submaps of two such drives along the same way; `offset` [m] from the
+// truth.
 inline LoopClosure ClosureOnWay(const SubmapId& reference,
                                 const SubmapId& query, const double spacing,
                                 const double offset, const double score) {

@@ -45,6 +45,9 @@ class TwoOffices {
   [[nodiscard]] std::string File(const std::string& name) const {
     return directory_.File(name);
   }
+  [[nodiscard]] std::string Read(const std::string& name) const {
+    return directory_.Read(name);
+  }
   [[nodiscard]] Truth TruthOf(const std::string& map) const {
     absl::StatusOr<Truth> truth = ReadTruth(map + ".truth.csv");
     CHECK(truth.ok()) << truth.status();
@@ -65,8 +68,8 @@ class TwoOffices {
              const uint32_t drive_seed) const {
     SimulationOptions simulation;
     simulation.drive.length = 140.;
-    const absl::StatusOr<SimulatedMap> map =
-        Simulate(MakeOffice(OfficeOptions(), plan_seed), simulation, drive_seed);
+    const absl::StatusOr<SimulatedMap> map = Simulate(
+        MakeOffice(OfficeOptions(), plan_seed), simulation, drive_seed);
     CHECK(map.ok()) << map.status();
     const absl::Status written =
         WriteSimulatedMap(*map, path, path + ".truth.csv");
