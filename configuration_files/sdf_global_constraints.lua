@@ -290,7 +290,7 @@ SDF_GLOBAL_CONSTRAINTS = {
       max_place_score = 10.,
       -- Least evidence of all places (log-odds). Larger: fewer answers, fewer
       -- wrong ones.
-      min_score = 8.,
+      min_score = 6.5,
       -- Least lead over the best other answer (log-odds). Larger: more refusals
       -- where places look alike.
       min_lead = 4.,
@@ -315,9 +315,13 @@ SDF_GLOBAL_CONSTRAINTS = {
       hit_probability = 0.55,
       miss_probability = 0.49,
     },
-    -- Submaps that each place is compared with at first, as an index proposes;
-    -- all of them where that leaves the answer uncertain. Larger: slower.
-    num_first_candidates = 8,
+    -- Places, evenly spaced, that are searched in the map at first; twice as
+    -- many in all each time that leaves the answer uncertain. Larger: slower
+    -- where few are enough.
+    num_first_places = 4,
+    -- Pairs of submaps that are verified where the answer lays them over each
+    -- other. Larger: more is known for and against it, slower.
+    max_num_confirmed_pairs = 150,
   },
   -- Several maps as one (merge). What is not here is as above.
   merging = {

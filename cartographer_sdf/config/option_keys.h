@@ -262,7 +262,8 @@ template <typename Visitor>
 void VisitOptions(Visitor& visit, RelocalizationOptions& options) {
   visit("placement", options.placement);
   visit("scan_places", options.scan_places);
-  visit("num_first_candidates", options.num_first_candidates);
+  visit("num_first_places", options.num_first_places);
+  visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
 }
 
 template <typename Visitor>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -423,13 +424,17 @@ absl::StatusOr<MergingResult> MergeSessions(
     }
   }
 
+  // Every match is of use here.
+  RelocalizationOptions thorough = relocalization;
+  thorough.num_first_places = std::numeric_limits<int>::max();
+  thorough.max_num_confirmed_pairs = std::numeric_limits<int>::max();
   Groups groups(sessions.size());
   for (size_t first = 0; first < sessions.size(); ++first) {
     for (size_t second = first + 1; second < sessions.size(); ++second) {
       SessionLink link{first, second, {}};
       link.relocalization = Relocalize(
-          relocalization, stages, sessions[first].map, sessions[second].map,
-          executor, [&](const std::string& stage) {
+          thorough, stages, sessions[first].map, sessions[second].map, executor,
+          [&](const std::string& stage) {
             return clock.Begin(
                 absl::StrFormat("%s, %d and %d", stage, first + 1, second + 1));
           });

@@ -272,46 +272,49 @@ double DriftSigma(const ConsistencyOptions& options, const double way) {
   return std::hypot(swing, options.translation_sigma_per_meter * way);
 }
 
-// The pose of a pair by the vote nearest to both; none where either map may
-// have drifted too far since.
+// The pose of a pair by the vote nearest to both.
+struct Prediction {
+  Rigid2 T_reference_query;
+  double way = 0.;  // through both maps [m]
+};
+
 class Predictor {
  public:
-  Predictor(const ConsistencyOptions& consistency, const MapPair& maps,
-            const std::vector<LoopClosure>& closures,
-            const std::vector<size_t>& votes)
-      : consistency_(consistency),
-        maps_(maps),
-        closures_(closures),
-        votes_(votes) {}
+  Predictor(const MapPair& maps, const std::vector<LoopClosure>& votes)
+      : maps_(maps), votes_(votes) {}
 
-  [[nodiscard]] std::optional<Rigid2> Predict(const SubmapId& reference,
-                                              const SubmapId& query) const {
-    // Half of what registration recovers [m].
-    constexpr double kMaxSigma = 0.3;
+  [[nodiscard]] std::optional<Prediction> Predict(const SubmapId& reference,
+                                                  const SubmapId& query) const {
     const LoopClosure* nearest = nullptr;
     double shortest = std::numeric_limits<double>::infinity();
-    for (const size_t vote : votes_) {
-      const LoopClosure& closure = closures_[vote];
+    for (const LoopClosure& vote : votes_) {
       const std::optional<double> in_map =
-          maps_.map_distances.Between(closure.reference, reference);
+          maps_.map_distances.Between(vote.reference, reference);
       const std::optional<double> in_query =
-          maps_.query_distances.Between(closure.query, query);
+          maps_.query_distances.Between(vote.query, query);
       if (!in_map || !in_query || *in_map + *in_query >= shortest) continue;
       shortest = *in_map + *in_query;
-      nearest = &closure;
+      nearest = &vote;
     }
-    if (nearest == nullptr || DriftSigma(consistency_, shortest) > kMaxSigma) {
-      return std::nullopt;
-    }
-    return maps_.map.pose_graph.submap_poses.at(reference).Inverse() *
-           PlaceByVote(maps_, *nearest, query);
+    if (nearest == nullptr) return std::nullopt;
+    return Prediction{
+        maps_.map.pose_graph.submap_poses.at(reference).Inverse() *
+            PlaceByVote(maps_, *nearest, query),
+        shortest};
   }
 
  private:
-  const ConsistencyOptions& consistency_;
   const MapPair& maps_;
-  const std::vector<LoopClosure>& closures_;
-  const std::vector<size_t>& votes_;
+  const std::vector<LoopClosure>& votes_;
+};
+
+// A pair of places that a placement may lay over each other.
+struct PairToCheck {
+  const Place* reference = nullptr;
+  const Place* query = nullptr;
+  Prediction prediction;
+  std::optional<Match> agreeing;
+  std::optional<Match> contradicting;
 };
 
 }  // namespace
@@ -365,53 +368,69 @@ std::vector<Placement> FindPlacements(
   return placements;
 }
 
-Confirmation ConfirmPlacement(const PlacementOptions& options,
-                              const ConsistencyOptions& consistency,
-                              const MatchOptions& match_options,
-                              const MapPair& maps,
-                              const std::map<SubmapId, Place>& map_places,
-                              const std::map<SubmapId, Place>& query_places,
-                              const std::vector<LoopClosure>& closures,
-                              const Placement& placement,
-                              const Executor& executor) {
-  std::set<std::pair<SubmapId, SubmapId>> voted;
+Confirmation ConfirmPlacement(
+    const PlacementOptions& options, const ConsistencyOptions& consistency,
+    const MatchOptions& match_options, const MapPair& maps,
+    const std::map<SubmapId, Place>& map_places,
+    const std::map<SubmapId, Place>& query_places,
+    const std::vector<LoopClosure>& closures, const Placement& placement,
+    const size_t max_num_pairs, const Executor& executor) {
+  // How far off a prediction may be [m]: what registration recovers with ease
+  // where it is to agree, half of that where it is held against the placement.
+  constexpr double kMaxSigma = 0.7;
+  constexpr double kMaxContradictionSigma = 0.3;
+  std::vector<LoopClosure> votes;
+  std::set<std::pair<SubmapId, SubmapId>> done;
   for (const size_t vote : placement.votes) {
-    voted.emplace(closures[vote].reference, closures[vote].query);
+    votes.push_back(closures[vote]);
+    done.emplace(votes.back().reference, votes.back().query);
   }
-  const Predictor predictor(consistency, maps, closures, placement.votes);
-  struct Pair {
-    const Place* reference;
-    const Place* query;
-    Rigid2 T_reference_query;
-  };
-  std::vector<Pair> pairs;
-  for (const auto& [reference_id, reference] : map_places) {
-    for (const auto& [query_id, query] : query_places) {
-      if (voted.count({reference_id, query_id}) > 0) continue;
-      const std::optional<Rigid2> predicted =
-          predictor.Predict(reference_id, query_id);
-      if (predicted) pairs.push_back({&reference, &query, *predicted});
-    }
-  }
-  std::vector<std::optional<Match>> agreeing(pairs.size());
-  std::vector<std::optional<Match>> contradicting(pairs.size());
-  executor(pairs.size(), [&](const size_t k) {
-    const Place& reference = *pairs[k].reference;
-    const Place& query = *pairs[k].query;
-    const Rigid2& predicted = pairs[k].T_reference_query;
-    if (!Overlap(reference, query, predicted)) return;
-    agreeing[k] =
-        VerifyPose(match_options, reference, query, predicted,
+  const auto check = [&](PairToCheck* const pair) {
+    const Rigid2& predicted = pair->prediction.T_reference_query;
+    pair->agreeing =
+        VerifyPose(match_options, *pair->reference, *pair->query, predicted,
                    options.same_distance_meters, options.same_rotation);
-    if (agreeing[k]) return;
-    contradicting[k] =
-        FindContradiction(match_options, reference, query, predicted);
-  });
+    if (!pair->agreeing && DriftSigma(consistency, pair->prediction.way) <=
+                               kMaxContradictionSigma) {
+      pair->contradicting = FindContradiction(match_options, *pair->reference,
+                                              *pair->query, predicted);
+    }
+  };
   Confirmation confirmation;
-  for (size_t k = 0; k < pairs.size(); ++k) {
-    if (agreeing[k]) confirmation.agreeing.push_back(*std::move(agreeing[k]));
-    if (contradicting[k]) {
-      confirmation.contradicting.push_back(*std::move(contradicting[k]));
+  size_t num_left = max_num_pairs;
+  while (num_left > 0) {
+    const Predictor predictor(maps, votes);
+    std::vector<PairToCheck> pairs;
+    for (const auto& [reference_id, reference] : map_places) {
+      for (const auto& [query_id, query] : query_places) {
+        if (done.count({reference_id, query_id}) > 0) continue;
+        const std::optional<Prediction> prediction =
+            predictor.Predict(reference_id, query_id);
+        if (!prediction ||
+            DriftSigma(consistency, prediction->way) > kMaxSigma ||
+            !Overlap(reference, query, prediction->T_reference_query)) {
+          continue;
+        }
+        pairs.push_back({&reference, &query, *prediction, {}, {}});
+      }
+    }
+    if (pairs.empty()) break;
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const PairToCheck& a, const PairToCheck& b) {
+                       return a.prediction.way < b.prediction.way;
+                     });
+    pairs.resize(std::min(pairs.size(), num_left));
+    num_left -= pairs.size();
+    executor(pairs.size(), [&](const size_t k) { check(&pairs[k]); });
+    for (PairToCheck& pair : pairs) {
+      done.emplace(pair.reference->id, pair.query->id);
+      if (pair.agreeing) {
+        votes.push_back(pair.agreeing->closure);
+        confirmation.agreeing.push_back(*std::move(pair.agreeing));
+      }
+      if (pair.contradicting) {
+        confirmation.contradicting.push_back(*std::move(pair.contradicting));
+      }
     }
   }
   return confirmation;

@@ -35,7 +35,7 @@ struct PlacementOptions {
   double max_place_score = 10.;
   // Least score of all places that speak for the placement; log-odds. Above
   // what look-alikes in other buildings reach.
-  double min_score = 8.;
+  double min_score = 6.5;
   // Least lead over the best placement that it excludes; log-odds.
   double min_lead = 4.;
   // Of the places of the query that the placement puts into what the map has
@@ -83,6 +83,8 @@ struct Placement {
 
 // Looks where the placement should hold: each pair of submaps that it puts onto
 // each other, from the vote nearest to both, is verified at that pose alone.
+// Those that agree become votes themselves, and it spreads as far as the maps
+// meet. Pairs near votes come first; at most `max_num_pairs` are verified.
 struct Confirmation {
   // Accepted there; pairs that have voted already are left out.
   std::vector<Match> agreeing;
@@ -95,7 +97,7 @@ struct Confirmation {
     const std::map<SubmapId, Place>& map_places,
     const std::map<SubmapId, Place>& query_places,
     const std::vector<LoopClosure>& closures, const Placement& placement,
-    const Executor& executor);
+    size_t max_num_pairs, const Executor& executor);
 
 }  // namespace cartographer_sdf
 

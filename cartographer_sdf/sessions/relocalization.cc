@@ -75,41 +75,59 @@ class Relocalizer {
     }
     const MapPair maps(map_.state, query_.state);
     maps_ = &maps;
-    // An index pays where it spares many pairs.
-    constexpr size_t kMinNumPairsForIndex = 500;
-    if (map_.places.size() * query_.places.size() >= kMinNumPairsForIndex) {
-      RetrievalOptions retrieval = stages_.retrieval;
-      retrieval.max_num_candidates = options_.num_first_candidates;
-      retrieval.min_num_candidates =
-          std::min(retrieval.min_num_candidates, retrieval.max_num_candidates);
-      Search(retrieval, "match what the index proposes");
-    }
-    if (result_.verdict != RelocalizationVerdict::kLocalized) {
-      Search(std::nullopt, "match all");
-    }
+    Search();
     clock_.End();
     return std::move(result_);
   }
 
  private:
-  void Search(const std::optional<RetrievalOptions>& retrieval,
-              const std::string& stage) {
-    const std::vector<Match> matches =
-        MatchBetween(stages_.match, retrieval, map_.places, query_.places,
-                     executor_, clock_.Begin(stage));
-    result_.matches.clear();
-    num_ambiguous_ = 0;
-    for (const Match& match : matches) {
-      if (match.verdict == Verdict::kAccepted) result_.matches.push_back(match);
-      num_ambiguous_ += match.verdict == Verdict::kAmbiguous;
+  // All places of the query, those first that are searched first: every one at
+  // an even spacing, then those between.
+  [[nodiscard]] std::vector<std::map<SubmapId, Place>> Rounds() const {
+    std::vector<const Place*> places;
+    for (const auto& [id, place] : query_.places) places.push_back(&place);
+    std::vector<std::map<SubmapId, Place>> rounds;
+    std::set<size_t> done;
+    for (size_t count = static_cast<size_t>(options_.num_first_places);
+         done.size() < places.size(); count *= 2) {
+      std::map<SubmapId, Place>& round = rounds.emplace_back();
+      const size_t num = std::min(count, places.size());
+      for (size_t k = 0; k < num; ++k) {
+        // The middles of equal parts.
+        const size_t index = (2 * k + 1) * places.size() / (2 * num);
+        if (done.insert(index).second) {
+          round.emplace(places[index]->id, *places[index]);
+        }
+      }
     }
-    clock_.Begin("vote");
-    Vote();
-    if (!result_.placements.empty()) {
-      Confirm(clock_.Begin("confirm"));
-      clock_.Begin("decide");
+    return rounds;
+  }
+
+  void Search() {
+    std::vector<Match> found;
+    for (const std::map<SubmapId, Place>& places : Rounds()) {
+      if (places.empty()) continue;
+      std::vector<Match> matches =
+          MatchBetween(stages_.match, std::nullopt, map_.places, places,
+                       executor_, clock_.Begin("match"));
+      for (Match& match : matches) {
+        num_ambiguous_ += match.verdict == Verdict::kAmbiguous;
+        if (match.verdict == Verdict::kAccepted) {
+          found.push_back(std::move(match));
+        }
+      }
+      std::stable_sort(found.begin(), found.end(), &ByIds);
+      result_.matches = found;
+      result_.contradictions.clear();
+      clock_.Begin("vote");
+      Vote();
+      Decide();
+      if (result_.verdict != RelocalizationVerdict::kLocalized) continue;
+      clock_.Begin("confirm");
+      Confirm();
+      Decide();
+      if (result_.verdict == RelocalizationVerdict::kLocalized) return;
     }
-    Decide();
   }
 
   void Vote() {
@@ -117,11 +135,12 @@ class Relocalizer {
                                         *maps_, ClosuresOf(result_.matches));
   }
 
-  void Confirm(const ProgressCallback&) {
+  void Confirm() {
     Confirmation confirmation = ConfirmPlacement(
         options_.placement, stages_.consistency, stages_.match, *maps_,
         map_.places, query_.places, ClosuresOf(result_.matches),
-        result_.placements.front(), executor_);
+        result_.placements.front(),
+        static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
     result_.contradictions = std::move(confirmation.contradicting);
     if (confirmation.agreeing.empty()) return;
     // What was matched elsewhere and is confirmed here has two matches.
@@ -227,8 +246,11 @@ std::string Validate(const RelocalizationOptions& options) {
        {Validate(options.placement), Validate(options.scan_places)}) {
     if (!error.empty()) return error;
   }
-  if (options.num_first_candidates < 1) {
-    return "num_first_candidates must be positive";
+  if (options.num_first_places < 1) {
+    return "num_first_places must be positive";
+  }
+  if (options.max_num_confirmed_pairs < 0) {
+    return "max_num_confirmed_pairs must not be negative";
   }
   return "";
 }

@@ -25,10 +25,13 @@ struct RelocalizationOptions {
   PlacementOptions placement;
   // Of queries that are made from scans.
   ScanPlaceOptions scan_places;
-  // Submaps of the map that each place of the query is compared with at first,
-  // as the index proposes; all of them where that leaves the answer uncertain.
-  // Larger: slower, fewer second searches.
-  int num_first_candidates = 8;
+  // Places of the query, evenly spaced, that are searched at first; twice as
+  // many in all each time that leaves the answer uncertain. Larger: slower
+  // where few are enough.
+  int num_first_places = 4;
+  // Pairs of submaps that are verified where the answer lays them over each
+  // other. Larger: more agreeing and contradicting matches, slower.
+  int max_num_confirmed_pairs = 150;
 };
 [[nodiscard]] std::string Validate(const RelocalizationOptions& options);
 

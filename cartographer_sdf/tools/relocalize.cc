@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -207,9 +208,15 @@ absl::Status RunRelocalize() {
       options->relocalization, options->loop_closing, FLAGS_query, *window,
       executor, progress.Begin("read and describe the query"));
   if (!query.ok()) return query.status();
+  RelocalizationOptions relocalization = options->relocalization;
+  if (!FLAGS_output.empty()) {
+    // Every match is of use.
+    relocalization.num_first_places = std::numeric_limits<int>::max();
+    relocalization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
+  }
   const Relocalization result =
-      Relocalize(options->relocalization, options->loop_closing, *map,
-                 query->map, executor, progress.Callback());
+      Relocalize(relocalization, options->loop_closing, *map, query->map,
+                 executor, progress.Callback());
   const Session map_session{FLAGS_map, *std::move(map), {}};
   absl::Status status;
   if (!FLAGS_result.empty()) {
