@@ -29,8 +29,8 @@ class Groups {
     return parents_[k] == k ? k : Of(parents_[k]);
   }
   void Join(const size_t a, const size_t b) {
-    const auto [low, high] = std::minmax(Of(a), Of(b));
-    parents_[high] = low;
+    const size_t group_a = Of(a), group_b = Of(b);
+    parents_[std::max(group_a, group_b)] = std::min(group_a, group_b);
   }
 
  private:
