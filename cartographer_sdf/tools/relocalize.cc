@@ -245,7 +245,7 @@ absl::Status RunRelocalize() {
 Subcommand RelocalizeSubcommand() {
   return Subcommand{
       "relocalize",
-      "where one map, or the beginning of a drive, lies in another map",
+      "where a map, or a drive's start, lies in a map",
       "--map A.pbstream --query B.pbstream [--first_seconds N] "
       "[--result R.json] [--output M.pbstream] [--report DIR]",
       "Searches every submap of the query in the map, without a pose prior. "

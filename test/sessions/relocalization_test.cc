@@ -117,9 +117,10 @@ TEST_F(RelocalizationTest, TwiceTheSamePlaceIsAmbiguous) {
     graph.submap_poses[{1, id.index}] = T_map_copy * graph.submap_poses.at(id);
   }
   for (const auto& [id, node] : morning_->state.pose_graph.nodes) {
-    Node copy = node;
+    Node& copy = graph.nodes[{1, id.index}];
+    copy.time = node.time;
+    copy.T_local_node = node.T_local_node;
     copy.T_map_node = T_map_copy * node.T_map_node;
-    graph.nodes[{1, id.index}] = copy;
   }
   for (Constraint constraint : morning_->state.pose_graph.constraints) {
     constraint.submap.trajectory = constraint.node.trajectory = 1;
