@@ -3,13 +3,10 @@
 
 #include "cartographer_sdf/live/host_options.h"
 
-#include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
-#include "cartographer/common/config.h"
 #include "cartographer/common/configuration_file_resolver.h"
 #include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/map_builder.h"
@@ -17,20 +14,6 @@
 
 namespace cartographer_sdf {
 namespace {
-
-absl::Status CheckFile(std::vector<std::string> directories,
-                       const std::string& basename) {
-  directories.emplace_back(cartographer::common::kConfigurationFilesDirectory);
-  for (const std::string& directory : directories) {
-    std::error_code ignored;
-    const std::string path = absl::StrCat(directory, "/", basename);
-    if (std::filesystem::is_regular_file(path, ignored)) {
-      return absl::OkStatus();
-    }
-  }
-  return absl::NotFoundError(absl::StrCat("there is no file ", basename, " in ",
-                                          absl::StrJoin(directories, ", ")));
-}
 
 // The reader wants every key of the returned table to be used. What belongs to
 // ROS is not ours to use, and what the two tables hold should stay checked.
@@ -46,9 +29,6 @@ std::string OnlyWhatIsUsed(const std::string& code) {
 
 absl::StatusOr<HostOptions> LoadHostOptions(
     const std::vector<std::string>& directories, const std::string& basename) {
-  if (absl::Status status = CheckFile(directories, basename); !status.ok()) {
-    return status;
-  }
   auto resolver =
       std::make_unique<cartographer::common::ConfigurationFileResolver>(
           directories);

@@ -23,8 +23,8 @@ struct HostOptions {
 // passed over. It and what it includes is looked for in the directories, then
 // where Cartographer is installed.
 //
-// Cartographer's reader knows no errors: whatever is wrong inside the files is
-// LOG(FATAL). Only a missing file and options for 3D are an error here.
+// Cartographer's reader knows no errors: a missing file and whatever is wrong
+// inside of one is LOG(FATAL). Only options for 3D are an error here.
 [[nodiscard]] absl::StatusOr<HostOptions> LoadHostOptions(
     const std::vector<std::string>& directories, const std::string& basename);
 
