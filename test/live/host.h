@@ -64,17 +64,23 @@ inline cartographer::common::Time TimeOf(const double seconds) {
          cartographer::common::FromSeconds(1e9 + seconds);
 }
 
-// `T_odometry_robot` in any frame; the scan in the robot's.
-inline void FeedScan(
+// `T_odometry_robot` in any frame.
+inline void FeedOdometry(
     cartographer::mapping::MapBuilderInterface* const map_builder,
     const int trajectory_id, const double seconds,
-    const Rigid2& T_odometry_robot, const Scan& scan) {
-  auto* const builder = map_builder->GetTrajectoryBuilder(trajectory_id);
+    const Rigid2& T_odometry_robot) {
   const Rigid3 pose = Embed3D(T_odometry_robot);
-  builder->AddSensorData(
-      kOdometry, cartographer::sensor::OdometryData{
-                     TimeOf(seconds), cartographer::transform::Rigid3d(
-                                          pose.translation, pose.rotation)});
+  map_builder->GetTrajectoryBuilder(trajectory_id)
+      ->AddSensorData(kOdometry, cartographer::sensor::OdometryData{
+                                     TimeOf(seconds),
+                                     cartographer::transform::Rigid3d(
+                                         pose.translation, pose.rotation)});
+}
+
+// In the robot's frame.
+inline void FeedScan(
+    cartographer::mapping::MapBuilderInterface* const map_builder,
+    const int trajectory_id, const double seconds, const Scan& scan) {
   cartographer::sensor::TimedPointCloudData data;
   data.time = TimeOf(seconds);
   data.origin = Eigen::Vector3f::Zero();
@@ -87,7 +93,7 @@ inline void FeedScan(
     data.ranges.push_back(
         {{kNoEcho * direction.x(), kNoEcho * direction.y(), 0.f}, 0.f});
   }
-  builder->AddSensorData(kRange, data);
+  map_builder->GetTrajectoryBuilder(trajectory_id)->AddSensorData(kRange, data);
 }
 
 }  // namespace cartographer_sdf::testing

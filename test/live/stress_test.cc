@@ -27,6 +27,7 @@ namespace cartographer_sdf {
 namespace {
 
 namespace mapping = cartographer::mapping;
+using testing::FeedOdometry;
 using testing::FeedScan;
 using testing::MakeStockOptions;
 using testing::SensorIds;
@@ -124,8 +125,10 @@ class StressTest : public ::testing::Test {
     const double angle = robot.phase + 0.1 * robot.num_scans;
     const Rigid2 T_room_robot(1.5 + 0.7 * std::cos(angle),
                               1.5 + 0.7 * std::sin(angle), angle);
+    FeedOdometry(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
+                 T_room_robot);
     FeedScan(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
-             T_room_robot, ScanOfARoom(T_room_robot));
+             ScanOfARoom(T_room_robot));
     ++robot.num_scans;
   }
 
