@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/loop_closing/neighbours.h"
 #include "cartographer_sdf/loop_closing/selection_between.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
@@ -23,6 +25,12 @@ DEFINE_string(method, "",
 DEFINE_string(terms, "",
               "The file to write the terms of every pair's score to. Only "
               "method sdf.");
+DEFINE_string(neighbour_terms, "",
+              "The file to write the terms of every pair's score in its "
+              "neighbourhood to. Only method sdf, not with --alone.");
+DEFINE_bool(alone, false,
+            "Judge each pair of submaps by itself, without its neighbours. "
+            "Only method sdf.");
 DEFINE_bool(agree, false,
             "Whether accepted matches must agree with each other, as in "
             "close_loops. Only method sdf.");
@@ -59,9 +67,9 @@ absl::StatusOr<Options> LoadOptionsOfMethod() {
 }
 
 // Takes back the acceptance of rows whose matches the others do not bear out.
-// `query` is absent where a map is matched with itself.
+// `query` is null where a map is matched with itself.
 void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
-                        const std::optional<MapState>& query,
+                        const MapState* const query,
                         const std::vector<Match>& matches,
                         std::vector<MatchRow>* const rows) {
   std::vector<LoopClosure> closures;
@@ -72,8 +80,9 @@ void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
     closure_rows.push_back(&(*rows)[k]);
   }
   const std::vector<SelectionResult> results =
-      query ? SelectConsistentBetween(options, map, *query, closures)
-            : SelectConsistent(options, OdometryPoses(map), closures);
+      query != nullptr
+          ? SelectConsistentBetween(options, map, *query, closures)
+          : SelectConsistent(options, OdometryPoses(map), closures);
   for (size_t k = 0; k < results.size(); ++k) {
     if (results[k].selection == Selection::kSelected) continue;
     closure_rows[k]->accepted = false;
@@ -101,12 +110,22 @@ absl::StatusOr<DescribedMap> DescribeInput(
   return std::move(remembered->map);
 }
 
+bool AsksNeighbours(const LoopClosingOptions& options) {
+  return options.ask_neighbours && !FLAGS_alone &&
+         options.match.method == Method::kSdf;
+}
+
 absl::Status RunMatch() {
   const absl::StatusOr<Options> options = LoadOptionsOfMethod();
   if (!options.ok()) return options.status();
   if (options->loop_closing.match.method != Method::kSdf &&
-      (FLAGS_agree || !FLAGS_terms.empty())) {
-    return UsageError("--agree and --terms need method sdf");
+      (FLAGS_agree || FLAGS_alone || !FLAGS_terms.empty())) {
+    return UsageError("--agree, --alone and --terms need method sdf");
+  }
+  if (!FLAGS_neighbour_terms.empty() &&
+      !AsksNeighbours(options->loop_closing)) {
+    return UsageError(
+        "--neighbour_terms needs method sdf, and neighbours that are asked");
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
@@ -119,19 +138,35 @@ absl::Status RunMatch() {
       DescribeInput(*options, executor, progress.Begin("read and describe"));
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
-  std::optional<MapState> query_state;
+  std::optional<DescribedMap> query;
   if (FLAGS_query.empty()) {
     matches =
         MatchWithin(stages.match, retrieval, map->places, stages.min_index_gap,
                     executor, progress.Begin("match and verify"));
   } else {
-    absl::StatusOr<DescribedMap> query =
+    absl::StatusOr<DescribedMap> described =
         DescribeMap(stages.place, stages.match, FLAGS_query, executor,
                     progress.Begin("read and describe"));
-    if (!query.ok()) return query.status();
+    if (!described.ok()) return described.status();
+    query = *std::move(described);
     matches = MatchBetween(stages.match, retrieval, map->places, query->places,
                            executor, progress.Begin("match and verify"));
-    query_state = std::move(query->state);
+  }
+  if (AsksNeighbours(stages)) {
+    const std::map<SubmapId, OdometryPose> odometry = OdometryPoses(map->state);
+    const PlacesAlongTrajectories references{&map->places, &odometry};
+    const ProgressCallback on_progress = progress.Begin("ask neighbours");
+    if (!query) {
+      JudgeByNeighbours(stages.neighbourhood, stages.match, references,
+                        references, stages.min_index_gap, executor, on_progress,
+                        &matches);
+    } else {
+      const std::map<SubmapId, OdometryPose> query_odometry =
+          OdometryPoses(query->state);
+      JudgeByNeighbours(stages.neighbourhood, stages.match, references,
+                        {&query->places, &query_odometry}, std::nullopt,
+                        executor, on_progress, &matches);
+    }
   }
   std::vector<MatchRow> rows;
   for (const Match& match : matches) {
@@ -139,8 +174,8 @@ absl::Status RunMatch() {
                          VerdictName(match.verdict)));
   }
   if (FLAGS_agree) {
-    RefuseInconsistent(stages.consistency, map->state, query_state, matches,
-                       &rows);
+    RefuseInconsistent(stages.consistency, map->state,
+                       query ? &query->state : nullptr, matches, &rows);
   }
   if (const absl::Status status = WriteMatches(FLAGS_output, rows);
       !status.ok()) {
@@ -148,6 +183,11 @@ absl::Status RunMatch() {
   }
   if (!FLAGS_terms.empty()) {
     const absl::Status status = WriteScoreTerms(FLAGS_terms, matches);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_neighbour_terms.empty()) {
+    const absl::Status status = WriteNeighbourhoodTerms(
+        FLAGS_neighbour_terms, stages.neighbourhood, matches);
     if (!status.ok()) return status;
   }
   const auto num_accepted =
@@ -165,19 +205,23 @@ Subcommand MatchSubcommand() {
       "match",
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
-      "[--method sdf|paper] [--retrieval] [--places P.places] [--agree]",
+      "[--method sdf|paper] [--retrieval] [--places P.places] [--alone] "
+      "[--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
       "evidence. Nothing is optimised.\n\n"
       "The columns x, y, yaw are the pose of the query submap in the frame of "
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
       "log-odds of being right; paper: number of inliers).\n\n"
+      "Each pair is judged together with the neighbours of both submaps on "
+      "their trajectories; with --alone, by itself.\n\n"
       "With --agree, an accepted match that weightier ones contradict by the "
       "odometry between them, or that is uncertain and stands alone, is "
       "accepted no more, and its verdict says which.",
       {"input", "output"},
-      {"query", "method", "retrieval", "places", "agree", "terms",
-       "configuration_directory", "configuration_basename", "threads"},
+      {"query", "method", "retrieval", "places", "alone", "agree", "terms",
+       "neighbour_terms", "configuration_directory", "configuration_basename",
+       "threads"},
       &RunMatch};
 }
 
