@@ -14,11 +14,15 @@
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
+#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/sessions/relocalization.h"
 
 namespace cartographer_sdf {
 
 struct Options {
   LoopClosingOptions loop_closing;
+  RelocalizationOptions relocalization;
+  MergingOptions merging;
   ReportOptions report;
 };
 

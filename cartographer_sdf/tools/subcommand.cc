@@ -16,11 +16,18 @@ Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
 Subcommand Info();
 Subcommand MatchSubcommand();
+Subcommand MergeSubcommand();
+Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(),
-          SimulateSubcommand(), Info()};
+  return {CloseLoopsSubcommand(),
+          MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
+          Evaluate(),
+          SimulateSubcommand(),
+          Info()};
 }
 
 absl::Status UsageError(const std::string& message) {
