@@ -54,6 +54,8 @@ struct PrecisionRecallCurve {
 struct NamedCurve {
   std::string name;  // without commas
   PrecisionRecallCurve curve;
+  // Of a method with a part taken away.
+  bool is_variant = false;
 };
 
 // CSV with the columns series, threshold, right, wrong, precision, recall.

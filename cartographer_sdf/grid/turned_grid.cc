@@ -23,12 +23,21 @@ OccupancyGrid TurnedGrid(const OccupancyGrid& source, const double angle) {
       (bounds.sizes().array() / geometry.resolution).ceil().cast<int>();
   geometry.T_submap_grid = geometry.T_submap_grid * Rigid2(bounds.min(), 0.);
   OccupancyGrid turned = UnknownGrid(geometry);
-  const Rigid2 T_source_grid =
-      T_turned_source.Inverse() * geometry.T_submap_grid;
+  // (continuous cells of the source <- cells of the turned grid), worked out
+  // once: a pose applied to each of a million cells takes a quarter second.
+  const Rigid2 T_source_turned = source.geometry.T_submap_grid.Inverse() *
+                                 T_turned_source.Inverse() *
+                                 geometry.T_submap_grid;
+  const Eigen::Matrix2d R = T_source_turned.RotationMatrix();
+  const Eigen::Vector2d corner =
+      T_source_turned.translation() / geometry.resolution;
   for (int j = 0; j < geometry.size.y(); ++j) {
     for (int i = 0; i < geometry.size.x(); ++i) {
-      const Eigen::Array2i cell = source.geometry.CellAt(
-          T_source_grid * geometry.CellsToGrid(Eigen::Vector2d(i, j)));
+      const Eigen::Array2i cell =
+          (R * Eigen::Vector2d(i + 0.5, j + 0.5) + corner)
+              .array()
+              .floor()
+              .cast<int>();
       if (!source.geometry.Contains(cell)) continue;
       turned.known(i, j) = source.known(cell.x(), cell.y());
       turned.probability(i, j) = source.probability(cell.x(), cell.y());

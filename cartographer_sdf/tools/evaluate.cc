@@ -48,7 +48,12 @@ DEFINE_string(
     curves, "",
     "The file to write precision and recall over the threshold to: of "
     "--random_pairs, each method a series, and of --matches.");
-DEFINE_string(plot, "", "The file to draw the same curves to, an SVG.");
+DEFINE_string(plot, "",
+              "The file to draw the same curves to, an SVG; without those of "
+              "--max_clearances.");
+DEFINE_string(free_space_plot, "",
+              "The file to draw to the curves of the paper's method by "
+              "--max_clearances, beside shape_context, an SVG.");
 
 namespace cartographer_sdf {
 namespace {
@@ -210,7 +215,7 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
     accepted.push_back(
         MeasureAccepted(absl::StrCat("accepted", suffix),
                         ScorePlaceRecognition(pairs, labels, *matches)));
-    curves->push_back({SeriesName(file), curve});
+    curves->push_back({SeriesName(file), curve, /*is_variant=*/false});
     if (FLAGS_labels.empty()) continue;
     const absl::Status status = WriteAnswerLabels(FLAGS_labels, labels);
     if (!status.ok()) return status;
@@ -219,9 +224,10 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
   return absl::OkStatus();
 }
 
-std::string DrawCurves(const std::vector<NamedCurve>& curves) {
+std::string DrawCurves(const std::string& title,
+                       const std::vector<NamedCurve>& curves) {
   LinePlot plot;
-  plot.title = "Precision and recall";
+  plot.title = title;
   plot.x = {"recall", std::make_pair(0., 1.)};
   plot.y = {"precision", std::make_pair(0., 1.05)};
   plot.legend = LegendCorner::kBottomLeft;
@@ -242,8 +248,22 @@ absl::Status WriteResults(const std::vector<Measurement>& measurements,
   if (status.ok() && !FLAGS_curves.empty()) {
     status = WriteCurves(FLAGS_curves, curves);
   }
+  std::vector<NamedCurve> of_methods, of_free_space;
+  for (const NamedCurve& curve : curves) {
+    if (!curve.is_variant) of_methods.push_back(curve);
+    if (curve.is_variant || curve.name == "paper" ||
+        curve.name == "shape_context") {
+      of_free_space.push_back(curve);
+    }
+  }
   if (status.ok() && !FLAGS_plot.empty()) {
-    status = WriteWholeFile(FLAGS_plot, DrawCurves(curves));
+    status = WriteWholeFile(FLAGS_plot,
+                            DrawCurves("Precision and recall", of_methods));
+  }
+  if (status.ok() && !FLAGS_free_space_plot.empty()) {
+    status = WriteWholeFile(
+        FLAGS_free_space_plot,
+        DrawCurves("Features within a distance of walls", of_free_space));
   }
   return status;
 }
@@ -266,6 +286,9 @@ absl::Status CheckFlags() {
   }
   if (WantsRandomPairs() && FLAGS_truth.empty()) {
     return UsageError("--random_pairs needs --truth");
+  }
+  if (!FLAGS_free_space_plot.empty() && !WantsRandomPairs()) {
+    return UsageError("--free_space_plot needs --random_pairs");
   }
   if ((!FLAGS_curves.empty() || !FLAGS_plot.empty()) && FLAGS_matches.empty() &&
       !WantsRandomPairs()) {
@@ -339,10 +362,26 @@ Subcommand Evaluate() {
       "An answer is right where the pair's common area reaches "
       "--min_overlaps; in the columns with _pose, where its pose is, too.",
       {"input"},
-      {"relations", "seconds_per_scan", "truth", "matches", "labels", "query",
-       "query_truth", "csv", "curves", "plot", "random_pairs", "methods",
-       "pair_seed", "min_overlaps", "min_index_gap", "max_clearances",
-       "configuration_directory", "configuration_basename", "threads"},
+      {"relations",
+       "seconds_per_scan",
+       "truth",
+       "matches",
+       "labels",
+       "query",
+       "query_truth",
+       "csv",
+       "curves",
+       "plot",
+       "free_space_plot",
+       "random_pairs",
+       "methods",
+       "pair_seed",
+       "min_overlaps",
+       "min_index_gap",
+       "max_clearances",
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunEvaluate};
 }
 

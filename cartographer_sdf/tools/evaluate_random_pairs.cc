@@ -37,10 +37,11 @@ DEFINE_string(min_overlaps, "0.5,0.1,0.2,0.3,0.4,0.6,0.7",
 DEFINE_int32(min_index_gap, 3,
              "Random pairs of one trajectory are submaps whose indices differ "
              "by this or more; nearer than 3 they share scans.");
-DEFINE_string(max_clearances, "",
-              "Distances, separated by commas [m]: methods sdf and paper are "
-              "tried also by the keypoints alone that are within each of a "
-              "wall, as in the paper's 2.0,1.5,1.0,0.5.");
+DEFINE_string(
+    max_clearances, "",
+    "Distances, separated by commas [m]: method paper is tried also "
+    "by the keypoints alone that are within each of a wall, as in the "
+    "paper's 2.0,1.5,1.0,0.5.");
 
 namespace cartographer_sdf {
 namespace {
@@ -129,8 +130,8 @@ absl::StatusOr<std::vector<std::vector<MatchRow>>> Answer(
           : MakeGridPlaces(stages.place, stages.match, data.grids);
   return MatchTurnedPairs(
       stages.match, make_place, data.pairs,
-      options->describes_clouds ? std::vector<double>() : max_clearances,
-      executor, progress->Begin(absl::StrCat("match by ", method)));
+      method == "paper" ? max_clearances : std::vector<double>(), executor,
+      progress->Begin(absl::StrCat("match by ", method)));
 }
 
 Measurement Measure(const std::string& series, const double min_overlap,
@@ -186,27 +187,34 @@ absl::Status MeasureRandomPairs(const Truth& truth,
   const absl::StatusOr<RandomPairData> data =
       ReadData(truth, progress.Begin("read"));
   if (!data.ok()) return data.status();
-  std::vector<std::pair<std::string, std::vector<AnswerLabel>>> series;
+  struct Series {
+    std::string name;
+    bool is_variant;
+    std::vector<AnswerLabel> labels;
+  };
+  std::vector<Series> series;
   for (const std::string& method : MethodsOfFlags()) {
     const absl::StatusOr<std::vector<std::vector<MatchRow>>> answers =
         Answer(method, *data, max_clearances, executor, &progress);
     if (!answers.ok()) return answers.status();
     for (size_t v = 0; v < answers->size(); ++v) {
-      series.emplace_back(
-          v == 0 ? method
-                 : absl::StrFormat("%s %g m", method, max_clearances[v - 1]),
-          LabelAnswers(data->truths, truth, (*answers)[v]));
+      series.push_back(
+          {v == 0 ? method
+                  : absl::StrFormat("%s %g m", method, max_clearances[v - 1]),
+           v > 0, LabelAnswers(data->truths, truth, (*answers)[v])});
     }
   }
   for (const double min_overlap : min_overlaps) {
-    for (const auto& [name, labels] : series) {
+    for (const auto& [name, is_variant, labels] : series) {
       measurements->push_back(Measure(name, min_overlap, *data, labels));
     }
   }
-  for (const auto& [name, labels] : series) {
+  for (const auto& [name, is_variant, labels] : series) {
     curves->push_back(
-        {name, JudgePairs(data->truths, data->pairs, labels,
-                          min_overlaps.front(), AnswerJudgement::kByPair)});
+        {name,
+         JudgePairs(data->truths, data->pairs, labels, min_overlaps.front(),
+                    AnswerJudgement::kByPair),
+         is_variant});
   }
   return absl::OkStatus();
 }
