@@ -130,10 +130,11 @@ def processor():
 class Runner:
     """Runs the program, and remembers how, for the report."""
 
-    def __init__(self, program, work, directory):
+    def __init__(self, program, work, directory, threads):
         self.program = pathlib.Path(shutil.copy2(program, work))
         self.work = work
         self.directory = directory
+        self.threads = threads
         self.commands = []
         self.written = set()
         # A long run does not mind that options are worked on.
@@ -149,6 +150,8 @@ class Runner:
         if subcommand in ("match", "figures", "close_loops") or (
                 "--random_pairs" in words):
             words += ["--configuration_directory", str(self.configuration)]
+            if subcommand != "figures":
+                words += ["--threads", str(self.threads)]
         result = subprocess.run([self.program, *words], capture_output=True,
                                 text=True, check=False)
         if result.returncode != 0:
@@ -193,22 +196,22 @@ def write_table(path, header, rows):
 def random_pairs(runner, evaluated, arguments):
     """Sec. V-A and V-B on one map."""
     results = {}
-    for experiment, flags in (
-            ("random_pairs", ["--methods", ",".join(METHODS)]),
-            ("free_space", ["--methods", "paper,shape_context",
-                            "--max_clearances",
-                            ",".join(f"{c:g}" for c in CLEARANCES)]),
-            ("neighbours", ["--methods", "paper,shape_context",
-                            "--min_index_gap", 1])):
+    experiments = [("random_pairs", arguments.pairs, ["--methods",
+                                                      ",".join(METHODS),
+                    "--max_clearances", ",".join(f"{c:g}" for c in CLEARANCES)])]
+    if arguments.neighbours:
+        experiments.append(("neighbours", arguments.pairs, [
+            "--methods", "paper,shape_context", "--min_index_gap", 1]))
+    for experiment, num_pairs, flags in experiments:
         base = runner.directory / f"{evaluated.name}.{experiment}"
         flags += ["--min_overlaps", ",".join(f"{o:g}" for o in OVERLAPS)]
         if experiment != "neighbours":
-            flags += ["--plot", f"{base}.svg", "--curves",
-                      f"{base}.curves.csv"]
+            flags += ["--plot", f"{base}.svg", "--free_space_plot",
+                      runner.directory / f"{evaluated.name}.free_space.svg",
+                      "--curves", f"{base}.curves.csv"]
         runner.run("evaluate", "--input", evaluated.path, "--truth",
-                   evaluated.truth, "--random_pairs", arguments.pairs,
-                   "--pair_seed", arguments.seed, *flags, "--csv",
-                   f"{base}.csv")
+                   evaluated.truth, "--random_pairs", num_pairs, "--pair_seed",
+                   arguments.seed, *flags, "--csv", f"{base}.csv")
         results[experiment] = runner.numbers(f"{base}.csv")
     return results
 
@@ -231,13 +234,13 @@ def all_pairs(runner, name, reference, query=None):
                      ["--options_in_force", options]))
         runner.written.add(options)
         labels[method] = runner.work / f"{name}.{method}.labels.csv"
-        runner.run("evaluate", *inputs, *truths, "--matches", file, "--labels",
-                   labels[method])
         kept = runner.work / name / f"{method}.csv"
         kept.parent.mkdir(exist_ok=True)
         files.append(shutil.copy2(file, kept))
     runner.run("evaluate", *inputs, *truths, "--matches",
-               ",".join(map(str, files)), "--csv", f"{base}.all_pairs.csv",
+               ",".join(map(str, files)), "--labels",
+               ",".join(map(str, labels.values())), "--csv",
+               f"{base}.all_pairs.csv",
                "--curves", f"{base}.all_pairs.curves.csv", "--plot",
                f"{base}.all_pairs.svg")
     return {"numbers": runner.numbers(f"{base}.all_pairs.csv"),
@@ -352,6 +355,8 @@ def section_random_pairs(runner, maps, results, arguments):
             rows.append(row)
     lines += table(header, rows)
     write_table(runner.directory / "overlap_dependence.csv", header, rows)
+    if not all("neighbours" in results[m.name] for m in maps):
+        return lines
     lines += [
         "It does not say either whether submaps that share scans are among the "
         "pairs. With them, that is, with all pairs of a map:", ""]
@@ -374,7 +379,7 @@ def section_free_space(runner, maps, results):
         "than a distance are taken out (Sec. V-B).", ""]
     rows = []
     for evaluated in maps:
-        numbers = results[evaluated.name]["free_space"]
+        numbers = results[evaluated.name]["random_pairs"]
         rows.append([evaluated.name, *(
             show(numbers[f"{n} overlap>={OVERLAPS[0]:g}"].get("recall_p1"))
             for n in names)])
@@ -382,7 +387,7 @@ def section_free_space(runner, maps, results):
     write_table(runner.directory / "free_space.csv", ["map", *names], rows)
     rows = []
     for evaluated in maps:
-        numbers = results[evaluated.name]["free_space"]
+        numbers = results[evaluated.name]["random_pairs"]
         rows.append([evaluated.name, *(
             show(numbers[f"{n} overlap>={OVERLAPS[0]:g}"].get("ap"))
             for n in names)])
@@ -469,8 +474,8 @@ def section_relations(runner, maps, results):
     lines = [
         "## Relations before and after close_loops", "",
         "Errors of hand-verified relations of scans (Kuemmerle et al. 2009), all "
-        "and those of scans more than 30 s apart; where a map has none, of its "
-        "nodes after a rigid alignment with the truth.", ""]
+        "and those of scans more than 30 s apart, and of nodes after a rigid "
+        "alignment with the truth; of the maps that have relations.", ""]
     header = ["map", "of", "stage", "count", "mean [m]", "median", "90 %",
               "mean [deg]", "median", "90 %"]
     rows = []
@@ -571,13 +576,15 @@ def evaluate(arguments, maps, sessions):
     started = datetime.datetime.now()
     with tempfile.TemporaryDirectory() as work_directory:
         work = pathlib.Path(work_directory)
-        runner = Runner(arguments.program.resolve(), work, directory)
+        runner = Runner(arguments.program.resolve(), work, directory,
+                        arguments.threads)
         pair_results, strict, relation_results = {}, {}, {}
         for evaluated in maps:
             pair_results[evaluated.name] = random_pairs(runner, evaluated,
                                                         arguments)
             strict[evaluated.name] = all_pairs(runner, evaluated.name, evaluated)
-            relation_results[evaluated.name] = relations(runner, evaluated)
+            if evaluated.relations:
+                relation_results[evaluated.name] = relations(runner, evaluated)
         session_names = []
         for query, reference in sessions:
             name = f"{query.name}_in_{reference.name}"
@@ -613,7 +620,8 @@ def evaluate(arguments, maps, sessions):
             *section_all_pairs(runner, strict),
             *section_place_recognition(runner, strict, session_names, [
                 f for f in figures if "match" in f[0]]),
-            *section_relations(runner, maps, relation_results),
+            *section_relations(runner, [m for m in maps if m.relations],
+                               relation_results),
             *section_failures(strict, remarks)]
         others = [f for f in figures if "match" not in f[0]]
         if others:
@@ -641,6 +649,10 @@ def main():
                         "that are not there are passed over")
     parser.add_argument("--pairs", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=42)
+    parser.add_argument("--neighbours", action="store_true",
+                        help="also draw pairs among submaps that share scans")
+    parser.add_argument("--threads", type=int, default=0,
+                        help="of each run; 0: all cores")
     parser.add_argument("--figures", default="willow_1",
                         help="the map whose features are drawn, by name; none "
                         "if empty")

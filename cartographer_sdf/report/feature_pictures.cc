@@ -24,9 +24,9 @@ constexpr Color kUnknown{0.8, 0.8, 0.8};
 constexpr double kAzimuth = 30. * M_PI / 180.;
 constexpr double kElevation = 38. * M_PI / 180.;
 // Heights are drawn this much larger than lengths, so that rooms stand out.
-constexpr double kHeightScale = 2.5;
-// The distance at which the colours of the surface saturate [m].
-constexpr double kFullColorMeters = 3.;
+constexpr double kHeightScale = 1.6;
+// The distance at which the colours saturate [m].
+constexpr double kFullColorMeters = 2.;
 
 Color MarkColor(const KeypointMark mark) {
   switch (mark) {
@@ -40,30 +40,38 @@ Color MarkColor(const KeypointMark mark) {
   LOG(FATAL) << "not a mark: " << static_cast<int>(mark);
 }
 
-// From dark blue on walls to pale green far from them.
+// From blue on walls to yellow far from them.
 Color HeightColor(const double distance) {
   const double f = std::clamp(distance / kFullColorMeters, 0., 1.);
-  constexpr Color kLow{0.16, 0.12, 0.42};
-  constexpr Color kMiddle{0.12, 0.55, 0.6};
-  constexpr Color kHigh{0.95, 0.93, 0.45};
+  constexpr Color kLow{0.25, 0.25, 0.62};
+  constexpr Color kMiddle{0.25, 0.7, 0.72};
+  constexpr Color kHigh{1., 0.93, 0.45};
   return f < 0.5 ? Mix(kLow, kMiddle, 2. * f)
                  : Mix(kMiddle, kHigh, 2. * f - 1.);
 }
 
-// The smallest box of the cells that were observed, in the grid frame [m].
+// The box that holds all but one in a hundred of the observed cells on each
+// side, in the grid frame [m]: single beams through doors reach far.
 Eigen::AlignedBox2d ObservedBounds(const DistanceField& field) {
-  Eigen::AlignedBox2d bounds;
+  std::vector<double> xs, ys;
   for (int j = 0; j < field.geometry.size.y(); ++j) {
     for (int i = 0; i < field.geometry.size.x(); ++i) {
-      if (field.observed(i, j)) {
-        bounds.extend(field.geometry.CellsToGrid(Eigen::Vector2d(i, j)));
-      }
+      if (!field.observed(i, j)) continue;
+      const Eigen::Vector2d p_grid =
+          field.geometry.CellsToGrid(Eigen::Vector2d(i, j));
+      xs.push_back(p_grid.x());
+      ys.push_back(p_grid.y());
     }
   }
-  if (bounds.isEmpty()) bounds.extend(Eigen::Vector2d(0., 0.));
+  if (xs.empty()) return {Eigen::Vector2d(0., 0.), Eigen::Vector2d(1., 1.)};
+  std::sort(xs.begin(), xs.end());
+  std::sort(ys.begin(), ys.end());
+  const size_t rim = xs.size() / 100;
   const Eigen::Vector2d margin =
-      Eigen::Vector2d::Constant(field.geometry.resolution);
-  return {bounds.min() - margin, bounds.max() + margin};
+      Eigen::Vector2d::Constant(10. * field.geometry.resolution);
+  const Eigen::Vector2d low(xs[rim], ys[rim]);
+  const Eigen::Vector2d high(xs[xs.size() - 1 - rim], ys[ys.size() - 1 - rim]);
+  return {low - margin, high + margin};
 }
 
 int NumPixels(const double length, const double pixels_per_meter,
@@ -104,6 +112,7 @@ struct ObliqueView {
 
 struct SurfaceSheet {
   ObliqueView view;
+  Eigen::AlignedBox2d plane;   // what is shown, in the grid frame
   Eigen::AlignedBox2d turned;  // all corners of the plane
   Eigen::AlignedBox2d seen;    // all that is seen [m]
   double pixels_per_meter = 1.;
@@ -118,6 +127,7 @@ struct SurfaceSheet {
 SurfaceSheet PlaceSurface(const DistanceField& field, const int max_pixels) {
   const Eigen::AlignedBox2d bounds = ObservedBounds(field);
   SurfaceSheet sheet;
+  sheet.plane = bounds;
   sheet.view.centre = bounds.center();
   for (const double x : {bounds.min().x(), bounds.max().x()}) {
     for (const double y : {bounds.min().y(), bounds.max().y()}) {
@@ -149,7 +159,7 @@ double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
                       -kHeightScale * sample->gradient.y(), 1.)
           .normalized();
   const Eigen::Vector3d light = Eigen::Vector3d(-0.5, 0.35, 0.8).normalized();
-  return 0.45 + 0.55 * std::max(0., normal.dot(light));
+  return 0.6 + 0.4 * std::max(0., normal.dot(light));
 }
 
 }  // namespace
@@ -208,19 +218,25 @@ Picture DrawFieldSurface(const DistanceField& field,
     const double right =
         sheet.seen.min().x() + (x + 0.5) / sheet.pixels_per_meter;
     int horizon = picture.height();
+    bool follows_observed = false;
     for (double depth = sheet.turned.min().y(); depth <= sheet.turned.max().y();
          depth += step) {
       const Eigen::Vector2d p_grid = sheet.view.ToGrid({right, depth});
       const std::optional<double> distance = ObservedDistance(field, p_grid);
-      if (!distance) continue;
+      if (!distance || !sheet.plane.contains(p_grid)) {
+        follows_observed = false;
+        continue;
+      }
       const int row = static_cast<int>(std::floor(
           sheet.ToPixels(right, ObliqueView::Height(depth, *distance)).y()));
+      // What rises is drawn down to the horizon, but is no cliff where an
+      // observed part begins.
+      const int lowest =
+          follows_observed ? horizon : std::min(horizon, row + 1);
+      follows_observed = true;
       if (row >= horizon) continue;
       const Color color =
           Mix(kBlack, HeightColor(*distance), Brightness(field, p_grid));
-      // What rises is drawn down to the horizon, but is no cliff where the
-      // observed part begins.
-      const int lowest = horizon == picture.height() ? row + 1 : horizon;
       for (int y = std::max(0, row); y < lowest; ++y) {
         picture.BlendPixel(x, y, color);
       }
@@ -231,7 +247,7 @@ Picture DrawFieldSurface(const DistanceField& field,
   for (const MarkedKeypoint& keypoint : keypoints) {
     const Eigen::Vector2d p_grid = T_grid_submap * keypoint.position;
     const std::optional<FieldSample> sample = SampleField(field, p_grid);
-    if (!sample) continue;
+    if (!sample || !sheet.plane.contains(p_grid)) continue;
     const Eigen::Vector2d turned = sheet.view.Turned(p_grid);
     picture.DrawCircle(
         sheet.ToPixels(turned.x(),

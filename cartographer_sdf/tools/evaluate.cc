@@ -40,7 +40,8 @@ DEFINE_string(matches, "",
               "Matches to score, as `match` writes them; several files are "
               "separated by commas.");
 DEFINE_string(labels, "",
-              "The file to write to what the truth says of each match.");
+              "The file to write to what the truth says of each match; of "
+              "several files of matches as many, separated by commas.");
 DEFINE_string(query_truth, "",
               "True poses of the second map, in the world of the first.");
 DEFINE_string(csv, "", "The file to write all numbers to.");
@@ -166,8 +167,8 @@ Measurement MeasureAccepted(const std::string& subject,
            {"queries_right", score.num_queries_right}}};
 }
 
-std::vector<std::string> MatchFilesOfFlags() {
-  return absl::StrSplit(FLAGS_matches, ',', absl::SkipEmpty());
+std::vector<std::string> FilesOf(const std::string& flag) {
+  return absl::StrSplit(flag, ',', absl::SkipEmpty());
 }
 
 // What results of a table of matches are called: of several, each after its
@@ -199,9 +200,11 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
       query
           ? ComputePairTruths(map.observed, truth, query->observed, query_truth)
           : ComputePairTruths(map.observed, truth);
-  const std::vector<std::string> files = MatchFilesOfFlags();
+  const std::vector<std::string> files = FilesOf(FLAGS_matches);
   std::vector<Measurement> accepted;
-  for (const std::string& file : files) {
+  const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
+  for (size_t k = 0; k < files.size(); ++k) {
+    const std::string& file = files[k];
     const absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(file);
     if (!matches.ok()) return matches.status();
     const std::vector<AnswerLabel> labels =
@@ -216,8 +219,8 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
         MeasureAccepted(absl::StrCat("accepted", suffix),
                         ScorePlaceRecognition(pairs, labels, *matches)));
     curves->push_back({SeriesName(file), curve, /*is_variant=*/false});
-    if (FLAGS_labels.empty()) continue;
-    const absl::Status status = WriteAnswerLabels(FLAGS_labels, labels);
+    if (label_files.empty()) continue;
+    const absl::Status status = WriteAnswerLabels(label_files[k], labels);
     if (!status.ok()) return status;
   }
   measurements->insert(measurements->end(), accepted.begin(), accepted.end());
@@ -281,8 +284,9 @@ absl::Status CheckFlags() {
   if (!FLAGS_query.empty() && FLAGS_matches.empty()) {
     return UsageError("--query needs --matches");
   }
-  if (!FLAGS_labels.empty() && MatchFilesOfFlags().size() != 1) {
-    return UsageError("--labels needs --matches, one file of them");
+  if (!FLAGS_labels.empty() &&
+      FilesOf(FLAGS_labels).size() != FilesOf(FLAGS_matches).size()) {
+    return UsageError("--labels needs --matches, a file for each");
   }
   if (WantsRandomPairs() && FLAGS_truth.empty()) {
     return UsageError("--random_pairs needs --truth");

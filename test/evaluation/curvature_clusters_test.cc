@@ -43,7 +43,10 @@ TEST(CurvatureClustersTest, RoundClutterIsCurvedAlike) {
   for (double x = -2.; x <= 2.; x += kSpacing) {
     for (double y = -2.; y <= 2.; y += kSpacing) cloud.emplace_back(x, y);
   }
-  const std::vector<double> curvatures = Curvatures({}, cloud);
+  CurvatureClusterOptions options;
+  // No points of the raster lie on its rim, where rounding would decide.
+  options.scatter_radius_meters = 0.42;
+  const std::vector<double> curvatures = Curvatures(options, cloud);
   for (size_t k = 0; k < cloud.size(); ++k) {
     // On the raster, the scatter is isotropic to rounding.
     if (cloud[k].cwiseAbs().maxCoeff() < 1.5) {

@@ -154,9 +154,8 @@ TEST(FeaturesNearWallsTest, KeepsDescriptorsBesideTheirFeatures) {
   FeatureSet set;
   set.descriptors.resize(2, 3);
   for (int k = 0; k < 3; ++k) {
-    Feature feature;
-    feature.keypoint.clearance = k - 1.;
-    set.features.push_back(feature);
+    set.features.push_back(
+        {{{0., 0.}, k - 1., KeypointKind::kMaximum, 1.}, 0.});
     set.descriptors.col(k).setConstant(static_cast<float>(k));
   }
   const FeatureSet near = FeaturesNearWalls(set, 0.9);
