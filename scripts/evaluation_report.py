@@ -159,6 +159,9 @@ class Runner:
         return result.stdout
 
     def short(self, word):
+        """Paths are nobody's business but their names."""
+        if "," in word and "/" in word:
+            return ",".join(map(self.short, word.split(",")))
         path = pathlib.Path(word)
         return path.name if path.is_absolute() or word.startswith("..") else word
 
@@ -179,7 +182,7 @@ def show(number, digits=2):
 
 
 def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "| --- |" * len(header)]
+    lines = ["| " + " | ".join(header) + " |", "| --- " * len(header) + "|"]
     lines += ["| " + " | ".join(map(str, row)) + " |" for row in rows]
     return lines + [""]
 
@@ -449,8 +452,8 @@ def section_place_recognition(runner, strict, sessions, figures):
               "with a right one"]
     lines = [
         "## Place recognition", "",
-        "What each method accepts as shipped (sdf: log-odds; paper and "
-        "shape_context: at least 12 inliers). *Not judged*: one of the two "
+        "What each method accepts as shipped: sdf by log-odds and verdict, the "
+        "others by the number of inliers (see the options). *Not judged*: one of the two "
         "submaps has no true pose.", "",
         "### Loop closure within one trajectory", "",
         "Each submap against all before it, pairwise: `close_loops` and "
@@ -551,8 +554,8 @@ def section_failures(strict, remarks):
     lines += table(["map", "method", "positives", "right, above", "right, below",
                     "near", "wrong", "no answer", "best wrong answer"], rows)
     lines += [
-        "Recall of right answers by overlap, whatever their score (number of "
-        "pairs in parentheses where it is the same for all):", ""]
+        "Right ones among the answers to pairs of some overlap, whatever their "
+        "score (in parentheses, the number of pairs that have an answer):", ""]
     bins = [(0.5, 0.6), (0.6, 0.7), (0.7, 0.8), (0.8, 1.01)]
     rows = []
     for name, result in strict.items():

@@ -236,7 +236,7 @@ def report(arguments, tuned, tried, num_points):
                   "ten, and the shipped one.", "",
                   "| " + " | ".join(names) + " | recall at precision 1 | average "
                   "precision | recall with right poses |",
-                  "| --- |" * (len(names) + 3)]
+                  "| --- " * (len(names) + 3) + "|"]
         best = sorted(rows, key=rank, reverse=True)[:10]
         shipped = rows[0]
         for row in best + ([shipped] if shipped not in best else []):
@@ -247,7 +247,7 @@ def report(arguments, tuned, tried, num_points):
         lines.append("")
     lines += ["## On the other maps", "",
               "| map | method | parameters | recall at precision 1 | average "
-              "precision | recall with right poses |", "| --- |" * 6]
+              "precision | recall with right poses |", "| --- " * 6 + "|"]
     for which, row in tried:
         lines.append(f"| {row['map']} | {row['method']} | {which} | "
                      f"{cell(row['recall_p1'])} | {cell(row['ap'])} | "

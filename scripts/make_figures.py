@@ -58,7 +58,8 @@ def paper_figures(run, directory, maps, sessions, matches, chosen):
     for evaluated in maps:
         if evaluated.name != chosen:
             continue
-        with tempfile.TemporaryDirectory() as work:
+        with tempfile.TemporaryDirectory() as directory_of_run:
+            work = pathlib.Path(directory_of_run) / "figures"
             run("figures", "--input", evaluated.path, "--method", "sdf",
                 "--matches", matches[evaluated.name]["sdf"], "--output", work)
             for name, caption in (*SUBMAP_FIGURES, (
@@ -69,7 +70,8 @@ def paper_figures(run, directory, maps, sessions, matches, chosen):
                 figures.append((target, f"{evaluated.name}: {caption}"))
     for query, reference in sessions:
         name = f"{query.name}_in_{reference.name}"
-        with tempfile.TemporaryDirectory() as work:
+        with tempfile.TemporaryDirectory() as directory_of_run:
+            work = pathlib.Path(directory_of_run) / "figures"
             run("figures", "--input", reference.path, "--query", query.path,
                 "--method", "sdf", "--matches", matches[name]["sdf"],
                 "--output", work)
