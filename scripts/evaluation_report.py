@@ -10,8 +10,10 @@ that name, the tables (CSV), plots (SVG) and pictures (PNG) that it shows.
 """
 
 import argparse
+import contextlib
 import csv
 import datetime
+import hashlib
 import os
 import pathlib
 import shlex
@@ -131,7 +133,8 @@ class Runner:
     """Runs the program, and remembers how, for the report."""
 
     def __init__(self, program, work, directory, threads):
-        self.program = pathlib.Path(shutil.copy2(program, work))
+        self.program = work / "program"
+        shutil.copy2(program, self.program)
         self.work = work
         self.directory = directory
         self.threads = threads
@@ -139,10 +142,12 @@ class Runner:
         self.written = set()
         # A long run does not mind that options are worked on.
         self.configuration = work / "configuration"
-        shutil.copytree(SOURCE_DIR / "configuration_files", self.configuration)
+        shutil.copytree(SOURCE_DIR / "configuration_files", self.configuration,
+                        dirs_exist_ok=True)
 
     def run(self, *arguments):
-        words = [str(a) for a in arguments]
+        words = [os.path.abspath(a) if isinstance(a, pathlib.Path) else str(a)
+                 for a in arguments]
         subcommand = words[0]
         shown = [self.short(w) for w in words]
         self.commands.append(shlex.join(["cartographer_sdf", *shown]))
@@ -152,11 +157,31 @@ class Runner:
             words += ["--configuration_directory", str(self.configuration)]
             if subcommand != "figures":
                 words += ["--threads", str(self.threads)]
+        # What was done before with the same program, files and options, and
+        # kept by --work, is not done again.
+        mark = self.work / f"{self.key(words)}.done"
+        if mark.exists():
+            return
         result = subprocess.run([self.program, *words], capture_output=True,
                                 text=True, check=False)
         if result.returncode != 0:
             raise Failure(result.stderr.strip() or f"{subcommand} failed")
-        return result.stdout
+        mark.touch()
+
+    def key(self, words):
+        digest = hashlib.sha256(self.program.read_bytes())
+        for path in sorted(self.configuration.glob("*.lua")):
+            digest.update(path.read_bytes())
+        for word in words:
+            digest.update(b"\0" + word.encode())
+            path = pathlib.Path(word)
+            # Maps and tables change with their size or time.
+            if path.suffix in (".pbstream", ".csv") and path.is_file() and (
+                    self.directory not in path.parents
+                    and self.work not in path.parents):
+                status = path.stat()
+                digest.update(f"{status.st_size} {status.st_mtime_ns}".encode())
+        return digest.hexdigest()[:24]
 
     def short(self, word):
         """Paths are nobody's business but their names."""
@@ -231,16 +256,15 @@ def all_pairs(runner, name, reference, query=None):
         inputs += ["--query", query.path]
         truths += ["--query_truth", query.truth]
     for method in METHODS:
-        file = runner.work / f"{method}.csv"
+        file = runner.work / name / f"{method}.csv"
+        file.parent.mkdir(exist_ok=True)
         options = runner.directory / f"{method}.options.lua"
         runner.run("match", *inputs, "--method", method, "--output", file,
                    *([] if options in runner.written else
                      ["--options_in_force", options]))
         runner.written.add(options)
         labels[method] = runner.work / f"{name}.{method}.labels.csv"
-        kept = runner.work / name / f"{method}.csv"
-        kept.parent.mkdir(exist_ok=True)
-        files.append(shutil.copy2(file, kept))
+        files.append(file)
     runner.run("evaluate", *inputs, *truths, "--matches",
                ",".join(map(str, files)), "--labels",
                ",".join(map(str, labels.values())), "--csv",
@@ -263,10 +287,9 @@ def relations(runner, evaluated):
     if evaluated.stock:
         stages.append(("stock loop closing", evaluated.stock))
     for stage, path in stages:
-        file = runner.work / "relations.csv"
+        file = runner.work / f"{evaluated.name}.{path.stem}.relations.csv"
         runner.run("evaluate", "--input", path, *flags, "--csv", file)
         results[stage] = runner.numbers(file)
-    closed.unlink()
     return results
 
 
@@ -575,11 +598,13 @@ def section_failures(strict, remarks):
 
 
 def evaluate(arguments, maps, sessions):
-    directory = arguments.output.with_suffix("")
+    directory = arguments.output.with_suffix("").resolve()
     directory.mkdir(parents=True, exist_ok=True)
     started = datetime.datetime.now()
-    with tempfile.TemporaryDirectory() as work_directory:
-        work = pathlib.Path(work_directory)
+    with contextlib.ExitStack() as stack:
+        work = (arguments.work or pathlib.Path(stack.enter_context(
+            tempfile.TemporaryDirectory()))).resolve()
+        work.mkdir(parents=True, exist_ok=True)
         runner = Runner(arguments.program.resolve(), work, directory,
                         arguments.threads)
         pair_results, strict, relation_results = {}, {}, {}
@@ -597,7 +622,7 @@ def evaluate(arguments, maps, sessions):
         figures = []
         if arguments.figures:
             figures = make_figures.paper_figures(
-                runner.run, directory, maps, sessions,
+                runner.run, work, directory, maps, sessions,
                 {name: result["matches"] for name, result in strict.items()},
                 arguments.figures)
         remarks = (arguments.remarks.read_text(encoding="utf-8")
@@ -655,6 +680,9 @@ def main():
     parser.add_argument("--pairs_of", default="", metavar="NAME=N,...",
                         help="another number of random pairs for some maps")
     parser.add_argument("--seed", type=int, default=42)
+    parser.add_argument("--work", type=pathlib.Path,
+                        help="directory for what is in between; a run that was "
+                        "broken off goes on from there")
     parser.add_argument("--neighbours", action="store_true",
                         help="also draw pairs among submaps that share scans")
     parser.add_argument("--threads", type=int, default=0,

@@ -50,7 +50,7 @@ SUBMAP_FIGURES = (
 Session = collections.namedtuple("Session", "name path truth")
 
 
-def paper_figures(run, directory, maps, sessions, matches, chosen):
+def paper_figures(run, work, directory, maps, sessions, matches, chosen):
     """Draws by `run`, which takes the program's arguments. `matches` are tables
     of `match` by the name of the map (or "QUERY_in_MAP") and the method; the map
     called `chosen` is drawn. Returns file names with captions."""
@@ -58,28 +58,26 @@ def paper_figures(run, directory, maps, sessions, matches, chosen):
     for evaluated in maps:
         if evaluated.name != chosen:
             continue
-        with tempfile.TemporaryDirectory() as directory_of_run:
-            work = pathlib.Path(directory_of_run) / "figures"
-            run("figures", "--input", evaluated.path, "--method", "sdf",
-                "--matches", matches[evaluated.name]["sdf"], "--output", work)
-            for name, caption in (*SUBMAP_FIGURES, (
-                    "match_map.png", "A match of the end of the drive (red) with "
-                    "an earlier submap (blue)")):
-                target = f"{evaluated.name}.{name}"
-                shutil.copy(pathlib.Path(work) / name, directory / target)
-                figures.append((target, f"{evaluated.name}: {caption}"))
+        drawn = work / f"{evaluated.name}.figures"
+        run("figures", "--input", evaluated.path, "--method", "sdf",
+            "--matches", matches[evaluated.name]["sdf"], "--output", drawn)
+        for name, caption in (*SUBMAP_FIGURES, (
+                "match_map.png", "A match of the end of the drive (red) with an "
+                "earlier submap (blue), where the open map has them")):
+            target = f"{evaluated.name}.{name}"
+            shutil.copy(drawn / name, directory / target)
+            figures.append((target, f"{evaluated.name}: {caption}"))
     for query, reference in sessions:
         name = f"{query.name}_in_{reference.name}"
-        with tempfile.TemporaryDirectory() as directory_of_run:
-            work = pathlib.Path(directory_of_run) / "figures"
-            run("figures", "--input", reference.path, "--query", query.path,
-                "--method", "sdf", "--matches", matches[name]["sdf"],
-                "--output", work)
-            target = f"{name}.match_map.png"
-            shutil.copy(pathlib.Path(work) / "match_map.png", directory / target)
-            figures.append((target, f"{query.name} (red) in the map of "
-                            f"{reference.name} (blue), put there by the match "
-                            "that is drawn"))
+        drawn = work / f"{name}.figures"
+        run("figures", "--input", reference.path, "--query", query.path,
+            "--method", "sdf", "--matches", matches[name]["sdf"], "--output",
+            drawn)
+        target = f"{name}.match_map.png"
+        shutil.copy(drawn / "match_map.png", directory / target)
+        figures.append((target, f"{query.name} (red) in the map of "
+                        f"{reference.name} (blue), put there by the match "
+                        "that is drawn"))
     return figures
 
 
@@ -104,15 +102,13 @@ def draw_paper(arguments):
             matches["query_in_map"] = {"sdf": f"{work}/localised.csv"}
             run("match", "--input", map_path, "--query", query[0], "--output",
                 matches["query_in_map"]["sdf"])
-        figures = paper_figures(run, output, [evaluated], sessions, matches,
-                                "map")
-    for name, flags in (("precision_recall.svg", []),
-                        ("free_space.svg", ["--methods", "paper,shape_context",
-                                            "--max_clearances",
-                                            "2.0,1.5,1.0,0.5"])):
-        run("evaluate", "--input", map_path, "--truth", truth, "--random_pairs",
-            1000, *flags, "--plot", output / name)
-        figures.append((name, ""))
+        figures = paper_figures(run, pathlib.Path(work), output, [evaluated],
+                                sessions, matches, "map")
+    run("evaluate", "--input", map_path, "--truth", truth, "--random_pairs",
+        1000, "--max_clearances", "2.0,1.5,1.0,0.5", "--plot",
+        output / "precision_recall.svg", "--free_space_plot",
+        output / "free_space.svg")
+    figures += [("precision_recall.svg", ""), ("free_space.svg", "")]
     for name, _ in figures:
         print(output / name)
 
