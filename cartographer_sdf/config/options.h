@@ -15,6 +15,8 @@
 #include "cartographer_sdf/evaluation/shape_context.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
+#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/sessions/relocalization.h"
 
 namespace cartographer_sdf {
 
@@ -22,6 +24,8 @@ struct Options {
   LoopClosingOptions loop_closing;
   // The comparison method's description of submaps, `--method shape_context`.
   CloudPlaceOptions shape_context;
+  RelocalizationOptions relocalization;
+  MergingOptions merging;
   ReportOptions report;
 };
 

@@ -392,7 +392,7 @@ absl::Status RunFigures() {
 Subcommand Figures() {
   return Subcommand{
       "figures",
-      "pictures of how a map's features come about, and of a match",
+      "pictures of a map's features, and of a match",
       "--input A.pbstream [--query B.pbstream] [--submap 0,12] "
       "[--matches M.csv] --output DIR",
       "Draws one submap: its probability grid (grid.png) and distance field "

@@ -6,6 +6,7 @@
 #ifndef CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 #define CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,15 @@
 #include "gflags/gflags.h"
 
 DECLARE_string(input);
+DECLARE_string(map);
 DECLARE_string(query);
 DECLARE_string(output);
+DECLARE_string(places);
 DECLARE_string(truth);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);
+DECLARE_string(frozen_trajectories);
 DECLARE_int32(threads);
 
 namespace cartographer_sdf {
@@ -36,6 +40,9 @@ namespace cartographer_sdf {
 
 // As of --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();
+
+// As of --frozen_trajectories.
+[[nodiscard]] absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags();
 
 }  // namespace cartographer_sdf
 

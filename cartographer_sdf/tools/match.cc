@@ -38,11 +38,6 @@ DEFINE_bool(retrieval, false,
             "Match only those pairs of submaps that an index of all features "
             "proposes: much faster on large maps, at the price of some pairs.");
 
-DEFINE_string(places, "",
-              "A file beside --input that holds what its submaps look like: "
-              "read instead of describing them again, made where there is none "
-              "or where it is of another map or other options.");
-
 namespace cartographer_sdf {
 namespace {
 
@@ -81,26 +76,6 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
                            on_progress);
 }
 
-// A file of places is bound to all options: more than they depend on, but never
-// too few.
-absl::StatusOr<DescribedMap> DescribeInput(
-    const MethodOptions& method, const Executor& executor,
-    const ProgressCallback& on_progress) {
-  if (FLAGS_places.empty()) {
-    return Describe(method, FLAGS_input, executor, on_progress);
-  }
-  const Options& options = method.options;
-  const LoopClosingOptions& stages = options.loop_closing;
-  absl::StatusOr<RememberedMap> remembered =
-      RememberMap(stages.place, stages.match, FormatOptions(options),
-                  FLAGS_input, FLAGS_places, executor, on_progress);
-  if (!remembered.ok()) return remembered.status();
-  if (!remembered->complaint.empty()) {
-    std::cerr << "--places: " << remembered->complaint << "\n";
-  }
-  return std::move(remembered->map);
-}
-
 absl::Status RunMatch() {
   const absl::StatusOr<MethodOptions> method =
       LoadOptionsOfMethod(FLAGS_method);
@@ -119,8 +94,12 @@ absl::Status RunMatch() {
   const std::optional<RetrievalOptions> retrieval =
       FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
+  const ProgressCallback on_describe = progress.Begin("read and describe");
   const absl::StatusOr<DescribedMap> map =
-      DescribeInput(*method, executor, progress.Begin("read and describe"));
+      method->describes_clouds
+          ? Describe(*method, FLAGS_input, executor, on_describe)
+          : DescribeMapOfFlags(method->options, FLAGS_input, executor,
+                               on_describe);
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   std::optional<MapState> query_state;

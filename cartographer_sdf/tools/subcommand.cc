@@ -17,11 +17,15 @@ Subcommand Evaluate();
 Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
+Subcommand MergeSubcommand();
+Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
   return {CloseLoopsSubcommand(),
           MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
           Evaluate(),
           Figures(),
           SimulateSubcommand(),

@@ -131,9 +131,9 @@ TEST(MatchMapTest, TintsBothSubmapsAndJoinsThem) {
   };
   EXPECT_GT(at(-1., 0.5).blue, at(-1., 0.5).red + 20);
   EXPECT_GT(at(8.5, -0.5).red, at(8.5, -0.5).blue + 20);
-  // The line of the correspondence, between the rooms.
-  EXPECT_LT(at(4., 1.).red, 120);
-  EXPECT_GT(at(4., -1.).red, 120);
+  // The line of the correspondence, between the rooms: a pixel wide, half
+  // transparent, and perhaps spread over two.
+  EXPECT_LT(at(4., 1.).red, at(4., -1.).red - 50);
 }
 
 }  // namespace
