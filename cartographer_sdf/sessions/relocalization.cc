@@ -111,7 +111,10 @@ class Relocalizer {
           MatchBetween(stages_.match, std::nullopt, map_.places, places,
                        executor_, clock_.Begin("match"));
       for (Match& match : matches) {
-        num_ambiguous_ += match.verdict == Verdict::kAmbiguous;
+        // Likely, but for the rival.
+        num_ambiguous_ +=
+            match.verdict == Verdict::kAmbiguous &&
+            match.closure.score >= stages_.match.verification.min_score;
         if (match.verdict == Verdict::kAccepted) {
           found.push_back(std::move(match));
         }

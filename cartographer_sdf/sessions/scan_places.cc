@@ -100,20 +100,24 @@ OccupancyGrid AddSubmap(const ScanPlaceOptions& options, const SubmapId& id,
                         MapState* const map) {
   PoseGraph& graph = map->pose_graph;
   const Node& first = graph.nodes.at(nodes.front());
+  // The tracking frame, as the file's own poses have it.
+  const Rigid2 T_node_submap =
+      Project2D(Rigid3::Rotation(first.gravity_alignment));
   std::vector<PosedScan> posed;
   for (const NodeId& node : nodes) {
-    const Rigid2 T_submap_node =
-        SmoothPose(first).Inverse() * SmoothPose(graph.nodes.at(node));
+    const Rigid2 T_submap_node = T_node_submap.Inverse() *
+                                 SmoothPose(first).Inverse() *
+                                 SmoothPose(graph.nodes.at(node));
     graph.constraints.push_back(
         Constraint{id, node, T_submap_node, kIntraTranslationWeight,
                    kIntraRotationWeight, Constraint::Tag::kIntraSubmap});
     posed.push_back({T_submap_node, &scans.at(node)});
   }
-  graph.submap_poses[id] = first.T_map_node;
+  graph.submap_poses[id] = first.T_map_node * T_node_submap;
   OccupancyGrid grid = BuildSubmapGrid(posed, GridOptions(options));
   SubmapSummary summary;
   summary.num_range_data = static_cast<int>(nodes.size());
-  summary.T_local_submap = SmoothPose(first);
+  summary.T_local_submap = SmoothPose(first) * T_node_submap;
   summary.geometry = grid.geometry;
   summary.num_known_cells = static_cast<int>(grid.known.count());
   map->submaps[id] = summary;

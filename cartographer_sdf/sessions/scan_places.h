@@ -36,10 +36,10 @@ struct TimeWindow {
 };
 
 // The nodes of a map in the window, and places made of their scans. It is a map
-// of its own: its submaps are these places, each in the frame of its first
-// node, with intra-submap constraints to its nodes; nodes keep their ids and
-// poses, and the index of a submap is that of its first node. Empty where no
-// node with range data falls into the window.
+// of its own: its submaps are these places, each in the tracking frame of
+// its first node, with intra-submap constraints to its nodes; nodes keep their
+// ids and poses, and the index of a submap is that of its first node. Empty
+// where no node with range data falls into the window.
 struct ScanMap {
   DescribedMap map;
   std::map<SubmapId, OccupancyGrid> grids;
