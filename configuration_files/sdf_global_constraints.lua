@@ -312,6 +312,39 @@ SDF_GLOBAL_CONSTRAINTS = {
       max_num_rounds = 10,
     },
   },
+  -- The comparison method: curvature clusters of point clouds (Bosse and Zlot
+  -- 2009), described by shape contexts (Belongie et al. 2002). Only for
+  -- `--method shape_context`, whose matching shape_context.lua sets.
+  shape_context = {
+    cloud = {
+      -- Scans taken of each submap. Larger: denser clouds, more time.
+      max_num_scans = 30,
+      -- [m] Points in one square of this side become one.
+      voxel_size_meters = 0.05,
+    },
+    keypoint = {
+      -- [m] Points within it say how a surface bends. Larger: small corners
+      -- blur.
+      scatter_radius_meters = 0.4,
+      -- Points with fewer neighbours are no part of a surface.
+      min_num_neighbours = 5,
+      -- Least curvature, 0 to 0.5. Larger: fewer, sharper keypoints.
+      detection_threshold = 0.05,
+      -- [m] Points of high curvature this near to each other are one keypoint.
+      cluster_radius_meters = 0.4,
+      -- Clusters of fewer points are noise.
+      min_num_points = 3,
+    },
+    descriptor = {
+      -- [m] How much of the surroundings is described.
+      radius_meters = 2.,
+      -- Each reaches twice as far as the one inside it.
+      num_radial_bins = 3,
+      num_angular_bins = 6,
+      -- [m] Points within it fix the direction that the others are seen from.
+      orientation_radius_meters = 1.,
+    },
+  },
   -- Where a map, or the beginning of a drive, lies in another map (relocalize,
   -- merge). What is not here is as in loop_closing.
   relocalization = {

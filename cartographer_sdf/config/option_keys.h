@@ -261,6 +261,36 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, SubmapCloudOptions& options) {
+  visit("max_num_scans", options.max_num_scans);
+  visit("voxel_size_meters", options.voxel_size_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CurvatureClusterOptions& options) {
+  visit("scatter_radius_meters", options.scatter_radius_meters);
+  visit("min_num_neighbours", options.min_num_neighbours);
+  visit("detection_threshold", options.detection_threshold);
+  visit("cluster_radius_meters", options.cluster_radius_meters);
+  visit("min_num_points", options.min_num_points);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ShapeContextOptions& options) {
+  visit("radius_meters", options.radius_meters);
+  visit("num_radial_bins", options.num_radial_bins);
+  visit("num_angular_bins", options.num_angular_bins);
+  visit("orientation_radius_meters", options.orientation_radius_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CloudPlaceOptions& options) {
+  visit("cloud", options.cloud);
+  visit("keypoint", options.keypoint);
+  visit("descriptor", options.descriptor);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, PlacementOptions& options) {
   visit("independent_distance_meters", options.independent_distance_meters);
   visit("max_place_score", options.max_place_score);
@@ -303,6 +333,7 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
+  visit("shape_context", options.shape_context);
   visit("relocalization", options.relocalization);
   visit("merging", options.merging);
   visit("report", options.report);

@@ -14,6 +14,7 @@ constexpr char kUsagePayload[] = "cartographer_sdf/usage";
 
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
+Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
 Subcommand MergeSubcommand();
@@ -26,6 +27,7 @@ std::vector<Subcommand> AllSubcommands() {
           RelocalizeSubcommand(),
           MergeSubcommand(),
           Evaluate(),
+          Figures(),
           SimulateSubcommand(),
           Info()};
 }
