@@ -56,7 +56,10 @@ absl::Status WriteNeighbourhoodTerms(const std::string& path,
                                      const std::vector<Match>& matches) {
   std::string content = Header(NeighbourhoodTermNames());
   for (const Match& match : matches) {
-    if (!match.verification || !match.neighbourhood) continue;
+    if (!match.verification || !match.neighbourhood ||
+        match.verification->score < options.min_pair_score) {
+      continue;
+    }
     AppendRow(match.closure, match.closure.score,
               NeighbourhoodTerms(options, match.verification->score,
                                  *match.neighbourhood),

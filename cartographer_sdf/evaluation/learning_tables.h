@@ -24,7 +24,7 @@ namespace cartographer_sdf {
                                            const std::vector<Match>& matches);
 
 // The same of the score in the neighbourhood (NeighbourhoodTermNames). Matches
-// whose neighbours nobody asked have no row.
+// whose neighbours nobody asked, or whose own score is hopeless, have no row.
 [[nodiscard]] absl::Status WriteNeighbourhoodTerms(
     const std::string& path, const NeighbourhoodOptions& options,
     const std::vector<Match>& matches);
