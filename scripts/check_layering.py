@@ -35,10 +35,14 @@ OFFLINE = {
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
     "place_store": [*CORE, "pbstream", "proto"],
     "loop_closing": [*CORE, "pose_graph", "pbstream", "place_store"],
-    "config": [*CORE, "pose_graph", "loop_closing", "report/report_options.h"],
+    "sessions": [*CORE, "pose_graph", "pbstream", "loop_closing",
+                 "simulation/lidar.h", "simulation/submap_grid.h"],
+    "config": [*CORE, "pose_graph", "loop_closing", "sessions",
+               "evaluation",
+               "report/report_options.h"],
     "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream",
                    "proto"],
-    "evaluation": [*CORE, "file", "pose_graph", "pbstream"],
+    "evaluation": [*CORE, "file", "pose_graph", "pbstream", "loop_closing"],
     "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {

@@ -239,6 +239,69 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, SubmapCloudOptions& options) {
+  visit("max_num_scans", options.max_num_scans);
+  visit("voxel_size_meters", options.voxel_size_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CurvatureClusterOptions& options) {
+  visit("scatter_radius_meters", options.scatter_radius_meters);
+  visit("min_num_neighbours", options.min_num_neighbours);
+  visit("detection_threshold", options.detection_threshold);
+  visit("cluster_radius_meters", options.cluster_radius_meters);
+  visit("min_num_points", options.min_num_points);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ShapeContextOptions& options) {
+  visit("radius_meters", options.radius_meters);
+  visit("num_radial_bins", options.num_radial_bins);
+  visit("num_angular_bins", options.num_angular_bins);
+  visit("orientation_radius_meters", options.orientation_radius_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CloudPlaceOptions& options) {
+  visit("cloud", options.cloud);
+  visit("keypoint", options.keypoint);
+  visit("descriptor", options.descriptor);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, PlacementOptions& options) {
+  visit("independent_distance_meters", options.independent_distance_meters);
+  visit("max_place_score", options.max_place_score);
+  visit("min_score", options.min_score);
+  visit("min_lead", options.min_lead);
+  visit("max_contradicting_fraction", options.max_contradicting_fraction);
+  visit("same_distance_meters", options.same_distance_meters);
+  visit("same_rotation", options.same_rotation);
+  visit("min_observed_area", options.min_observed_area);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ScanPlaceOptions& options) {
+  visit("num_scans", options.num_scans);
+  visit("resolution_meters", options.resolution_meters);
+  visit("hit_probability", options.hit_probability);
+  visit("miss_probability", options.miss_probability);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RelocalizationOptions& options) {
+  visit("placement", options.placement);
+  visit("scan_places", options.scan_places);
+  visit("num_first_places", options.num_first_places);
+  visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, MergingOptions& options) {
+  visit("max_folded_fraction", options.max_folded_fraction);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, ReportOptions& options) {
   visit("map_picture_pixels", options.map_picture_pixels);
   visit("closure_picture_pixels", options.closure_picture_pixels);
@@ -248,6 +311,9 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
+  visit("shape_context", options.shape_context);
+  visit("relocalization", options.relocalization);
+  visit("merging", options.merging);
   visit("report", options.report);
 }
 

@@ -7,15 +7,27 @@
 #include <filesystem>
 #include <thread>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
+DEFINE_string(
+    map, "",
+    "relocalize: the map in which to look, a .pbstream. simulate: the "
+    "floor plan to drive through, a PGM with dark walls; an office is "
+    "invented if empty.");
 DEFINE_string(query, "",
-              "Another map, whose submaps are searched in those of --input. "
-              "None if empty: the submaps of --input in each other.");
+              "Another map, whose submaps are searched in those of --input or "
+              "--map. In match, none if empty: the submaps of --input in each "
+              "other.");
 DEFINE_string(output, "", "The file to write.");
+DEFINE_string(places, "",
+              "A file beside the map (--input of match, --map) that holds what "
+              "its submaps look like: read instead of describing them again, "
+              "made where there is none or where it is of another map or other "
+              "options.");
 DEFINE_string(
     truth, "",
     "True poses, lines of kind,trajectory,index,x,y,yaw: read by evaluate, "
@@ -28,6 +40,9 @@ DEFINE_string(configuration_directory, "",
               "searched before those that come with the program.");
 DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
               "The configuration file; it may include others.");
+DEFINE_string(frozen_trajectories, "",
+              "Trajectories that stay where they are, by their numbers, "
+              "separated by commas.");
 DEFINE_int32(threads, 0,
              "Number of threads; 0 for as many as the machine has. The result "
              "does not depend on it.");
@@ -51,6 +66,10 @@ std::vector<std::string> ConfigurationDirectories() {
 }
 
 absl::StatusOr<Options> LoadOptionsOfFlags() {
+  return LoadOptionsOfFlags(FLAGS_configuration_basename);
+}
+
+absl::StatusOr<Options> LoadOptionsOfFlags(const std::string& basename) {
   // Else a misspelt one would be passed over for the defaults.
   for (const std::string& directory : GivenDirectories()) {
     std::error_code ignored;
@@ -59,7 +78,7 @@ absl::StatusOr<Options> LoadOptionsOfFlags() {
                                               directory, " is no directory"));
     }
   }
-  return LoadOptions(ConfigurationDirectories(), FLAGS_configuration_basename);
+  return LoadOptions(ConfigurationDirectories(), basename);
 }
 
 absl::StatusOr<int> NumThreadsOfFlags() {
@@ -70,6 +89,20 @@ absl::StatusOr<int> NumThreadsOfFlags() {
   if (FLAGS_threads > 0) return FLAGS_threads;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1,
                     kMaxThreads);
+}
+
+absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags() {
+  std::set<int> trajectories;
+  for (const absl::string_view text :
+       absl::StrSplit(FLAGS_frozen_trajectories, ',', absl::SkipEmpty())) {
+    int trajectory = -1;
+    if (!absl::SimpleAtoi(text, &trajectory) || trajectory < 0) {
+      return UsageError(
+          absl::StrCat("--frozen_trajectories: ", text, " is no trajectory"));
+    }
+    trajectories.insert(trajectory);
+  }
+  return trajectories;
 }
 
 }  // namespace cartographer_sdf

@@ -6,6 +6,7 @@
 #ifndef CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 #define CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,12 +15,15 @@
 #include "gflags/gflags.h"
 
 DECLARE_string(input);
+DECLARE_string(map);
 DECLARE_string(query);
 DECLARE_string(output);
+DECLARE_string(places);
 DECLARE_string(truth);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);
+DECLARE_string(frozen_trajectories);
 DECLARE_int32(threads);
 
 namespace cartographer_sdf {
@@ -28,11 +32,17 @@ namespace cartographer_sdf {
 // --configuration_directory, then where the program was built and installed.
 [[nodiscard]] std::vector<std::string> ConfigurationDirectories();
 
-// As of --configuration_directory and --configuration_basename.
+// As of --configuration_directory and --configuration_basename, or of another
+// file.
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
+[[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags(
+    const std::string& basename);
 
 // As of --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();
+
+// As of --frozen_trajectories.
+[[nodiscard]] absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags();
 
 }  // namespace cartographer_sdf
 

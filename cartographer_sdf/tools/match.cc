@@ -9,17 +9,24 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
 #include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/evaluation/shape_context.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/loop_closing/selection_between.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/method_options.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
-#include "gflags/gflags.h"
 
-DEFINE_string(method, "",
-              "sdf or paper; if empty, that of the configuration file. paper "
-              "reads paper.lua unless --configuration_basename is given.");
+DEFINE_string(
+    method, "",
+    "sdf, paper or shape_context; if empty, that of the configuration "
+    "file. paper reads paper.lua, shape_context shape_context.lua, "
+    "unless --configuration_basename is given.");
+DEFINE_string(options_in_force, "",
+              "The file to write all options to that the matches were made "
+              "with, as Lua.");
 DEFINE_string(terms, "",
               "The file to write the terms of every pair's score to. Only "
               "method sdf.");
@@ -31,32 +38,8 @@ DEFINE_bool(retrieval, false,
             "Match only those pairs of submaps that an index of all features "
             "proposes: much faster on large maps, at the price of some pairs.");
 
-DEFINE_string(places, "",
-              "A file beside --input that holds what its submaps look like: "
-              "read instead of describing them again, made where there is none "
-              "or where it is of another map or other options.");
-
 namespace cartographer_sdf {
 namespace {
-
-absl::StatusOr<Options> LoadOptionsOfMethod() {
-  if (FLAGS_method == "paper" &&
-      gflags::GetCommandLineFlagInfoOrDie("configuration_basename")
-          .is_default) {
-    FLAGS_configuration_basename = "paper.lua";
-  }
-  absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok() || FLAGS_method.empty()) return options;
-  if (FLAGS_method == "sdf") {
-    options->loop_closing.match.method = Method::kSdf;
-  } else if (FLAGS_method == "paper") {
-    options->loop_closing.match.method = Method::kPaper;
-  } else {
-    return UsageError(
-        absl::StrCat("--method must be sdf or paper, it is ", FLAGS_method));
-  }
-  return options;
-}
 
 // Takes back the acceptance of rows whose matches the others do not bear out.
 // `query` is absent where a map is matched with itself.
@@ -81,42 +64,42 @@ void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
   }
 }
 
-// A file of places is bound to all options: more than they depend on, but never
-// too few.
-absl::StatusOr<DescribedMap> DescribeInput(
-    const Options& options, const Executor& executor,
-    const ProgressCallback& on_progress) {
-  const LoopClosingOptions& stages = options.loop_closing;
-  if (FLAGS_places.empty()) {
-    return DescribeMap(stages.place, stages.match, FLAGS_input, executor,
-                       on_progress);
-  }
-  absl::StatusOr<RememberedMap> remembered =
-      RememberMap(stages.place, stages.match, FormatOptions(options),
-                  FLAGS_input, FLAGS_places, executor, on_progress);
-  if (!remembered.ok()) return remembered.status();
-  if (!remembered->complaint.empty()) {
-    std::cerr << "--places: " << remembered->complaint << "\n";
-  }
-  return std::move(remembered->map);
+absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
+                                      const std::string& path,
+                                      const Executor& executor,
+                                      const ProgressCallback& on_progress) {
+  const LoopClosingOptions& stages = method.options.loop_closing;
+  return method.describes_clouds
+             ? DescribeMapByShapeContexts(method.options.shape_context, path,
+                                          executor, on_progress)
+             : DescribeMap(stages.place, stages.match, path, executor,
+                           on_progress);
 }
 
 absl::Status RunMatch() {
-  const absl::StatusOr<Options> options = LoadOptionsOfMethod();
-  if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf &&
+  const absl::StatusOr<MethodOptions> method =
+      LoadOptionsOfMethod(FLAGS_method);
+  if (!method.ok()) return method.status();
+  if (method->options.loop_closing.match.method != Method::kSdf &&
       (FLAGS_agree || !FLAGS_terms.empty())) {
     return UsageError("--agree and --terms need method sdf");
   }
+  if (method->describes_clouds && !FLAGS_places.empty()) {
+    return UsageError("--places needs method sdf or paper");
+  }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
-  const LoopClosingOptions& stages = options->loop_closing;
+  const LoopClosingOptions& stages = method->options.loop_closing;
   const Executor executor = MakeExecutor(*num_threads);
   const std::optional<RetrievalOptions> retrieval =
       FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
+  const ProgressCallback on_describe = progress.Begin("read and describe");
   const absl::StatusOr<DescribedMap> map =
-      DescribeInput(*options, executor, progress.Begin("read and describe"));
+      method->describes_clouds
+          ? Describe(*method, FLAGS_input, executor, on_describe)
+          : DescribeMapOfFlags(method->options, FLAGS_input, executor,
+                               on_describe);
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   std::optional<MapState> query_state;
@@ -125,9 +108,8 @@ absl::Status RunMatch() {
         MatchWithin(stages.match, retrieval, map->places, stages.min_index_gap,
                     executor, progress.Begin("match and verify"));
   } else {
-    absl::StatusOr<DescribedMap> query =
-        DescribeMap(stages.place, stages.match, FLAGS_query, executor,
-                    progress.Begin("read and describe"));
+    absl::StatusOr<DescribedMap> query = Describe(
+        *method, FLAGS_query, executor, progress.Begin("read and describe"));
     if (!query.ok()) return query.status();
     matches = MatchBetween(stages.match, retrieval, map->places, query->places,
                            executor, progress.Begin("match and verify"));
@@ -150,6 +132,11 @@ absl::Status RunMatch() {
     const absl::Status status = WriteScoreTerms(FLAGS_terms, matches);
     if (!status.ok()) return status;
   }
+  if (!FLAGS_options_in_force.empty()) {
+    const absl::Status status =
+        WriteWholeFile(FLAGS_options_in_force, FormatOptions(method->options));
+    if (!status.ok()) return status;
+  }
   const auto num_accepted =
       std::count_if(rows.begin(), rows.end(),
                     [](const MatchRow& row) { return row.accepted; });
@@ -165,19 +152,22 @@ Subcommand MatchSubcommand() {
       "match",
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
-      "[--method sdf|paper] [--retrieval] [--places P.places] [--agree]",
+      "[--method sdf|paper|shape_context] [--retrieval] [--places P.places] "
+      "[--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
       "evidence. Nothing is optimised.\n\n"
       "The columns x, y, yaw are the pose of the query submap in the frame of "
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
-      "log-odds of being right; paper: number of inliers).\n\n"
+      "log-odds of being right; paper and shape_context: number of "
+      "inliers).\n\n"
       "With --agree, an accepted match that weightier ones contradict by the "
       "odometry between them, or that is uncertain and stands alone, is "
       "accepted no more, and its verdict says which.",
       {"input", "output"},
       {"query", "method", "retrieval", "places", "agree", "terms",
-       "configuration_directory", "configuration_basename", "threads"},
+       "options_in_force", "configuration_directory", "configuration_basename",
+       "threads"},
       &RunMatch};
 }
 

@@ -14,13 +14,22 @@ constexpr char kUsagePayload[] = "cartographer_sdf/usage";
 
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
+Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
+Subcommand MergeSubcommand();
+Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(),
-          SimulateSubcommand(), Info()};
+  return {CloseLoopsSubcommand(),
+          MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
+          Evaluate(),
+          Figures(),
+          SimulateSubcommand(),
+          Info()};
 }
 
 absl::Status UsageError(const std::string& message) {
