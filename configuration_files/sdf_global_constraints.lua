@@ -198,6 +198,40 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- Poses that come with each.
       max_num_hypotheses = 3,
     },
+    -- Whether matches are judged again by the neighbours of both submaps, where
+    -- local SLAM places them: tells twins apart, and finds what a pair's own
+    -- features do not. false: each pair alone, faster. `match` has the flag
+    -- --alone.
+    ask_neighbours = true,
+    neighbourhood = {
+      -- Neighbours on each side, and how far apart their indices are. Every
+      -- other submap shares no scans. Larger: more evidence, slower.
+      num_steps = 2,
+      index_step = 2,
+      -- [m^2] Two neighbours that see less in common are not asked.
+      min_overlap_area = 15.,
+      -- Wall points of each neighbour. Larger: more precise, slower.
+      num_points = 600,
+      -- [m] A match is judged as if its neighbours had seen this much wall more
+      -- in common ...
+      prior_wall_length_meters = 50.,
+      -- ... of which this part contradicts. Larger: agreement counts for more.
+      prior_contradiction_ratio = 0.05,
+      -- Matches of a lower score of their own are not looked at.
+      min_pair_score = -5.,
+      -- From this score on a match proposes poses to neighbouring pairs. Larger:
+      -- faster, less recall.
+      min_proposing_score = 0.,
+      -- Score = log-odds of being right. Learned by scripts/learn_score.py
+      -- --neighbours on the same maps as score_weights.
+      weights = {
+        -- Of the pair's own score.
+        pair_score = 0.52,
+        -- Of the logarithm of the neighbours' contradicting part of wall.
+        log_contradiction = -5.62,
+        bias = -0.64,
+      },
+    },
     -- Whether closures of submaps that local SLAM tore, so that walls stand in
     -- them twice, say nothing of others and need the support of others. Reads
     -- all scans of the map.

@@ -223,12 +223,34 @@ void VisitOptions(Visitor& visit, WithdrawalOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, NeighbourhoodWeights& weights) {
+  visit("pair_score", weights.pair_score);
+  visit("log_contradiction", weights.log_contradiction);
+  visit("bias", weights.bias);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
+  visit("num_steps", options.num_steps);
+  visit("index_step", options.index_step);
+  visit("min_overlap_area", options.min_overlap_area);
+  visit("num_points", options.num_points);
+  visit("prior_wall_length_meters", options.prior_wall_length_meters);
+  visit("prior_contradiction_ratio", options.prior_contradiction_ratio);
+  visit("min_pair_score", options.min_pair_score);
+  visit("min_proposing_score", options.min_proposing_score);
+  visit("weights", options.weights);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
   visit("place", options.place);
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
   visit("use_retrieval", options.use_retrieval);
   visit("retrieval", options.retrieval);
+  visit("ask_neighbours", options.ask_neighbours);
+  visit("neighbourhood", options.neighbourhood);
   visit("silence_torn_submaps", options.silence_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);

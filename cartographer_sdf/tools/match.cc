@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/loop_closing/neighbours.h"
 #include "cartographer_sdf/loop_closing/selection_between.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/method_options.h"
@@ -30,6 +32,12 @@ DEFINE_string(options_in_force, "",
 DEFINE_string(terms, "",
               "The file to write the terms of every pair's score to. Only "
               "method sdf.");
+DEFINE_string(neighbour_terms, "",
+              "The file to write the terms of every pair's score in its "
+              "neighbourhood to. Only method sdf, not with --alone.");
+DEFINE_bool(alone, false,
+            "Judge each pair of submaps by itself, without its neighbours. "
+            "Only method sdf.");
 DEFINE_bool(agree, false,
             "Whether accepted matches must agree with each other, as in "
             "close_loops. Only method sdf.");
@@ -42,9 +50,9 @@ namespace cartographer_sdf {
 namespace {
 
 // Takes back the acceptance of rows whose matches the others do not bear out.
-// `query` is absent where a map is matched with itself.
+// `query` is null where a map is matched with itself.
 void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
-                        const std::optional<MapState>& query,
+                        const MapState* const query,
                         const std::vector<Match>& matches,
                         std::vector<MatchRow>* const rows) {
   std::vector<LoopClosure> closures;
@@ -55,13 +63,39 @@ void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
     closure_rows.push_back(&(*rows)[k]);
   }
   const std::vector<SelectionResult> results =
-      query ? SelectConsistentBetween(options, map, *query, closures)
-            : SelectConsistent(options, OdometryPoses(map), closures);
+      query != nullptr
+          ? SelectConsistentBetween(options, map, *query, closures)
+          : SelectConsistent(options, OdometryPoses(map), closures);
   for (size_t k = 0; k < results.size(); ++k) {
     if (results[k].selection == Selection::kSelected) continue;
     closure_rows[k]->accepted = false;
     closure_rows[k]->verdict = SelectionName(results[k].selection);
   }
+}
+
+bool AsksNeighbours(const LoopClosingOptions& options) {
+  return options.ask_neighbours && !FLAGS_alone &&
+         options.match.method == Method::kSdf;
+}
+
+// `query` is null where a map is matched with itself.
+void AskNeighbours(const LoopClosingOptions& options, const DescribedMap& map,
+                   const DescribedMap* const query, const Executor& executor,
+                   const ProgressCallback& on_progress,
+                   std::vector<Match>* const matches) {
+  const std::map<SubmapId, OdometryPose> odometry = OdometryPoses(map.state);
+  const PlacesAlongTrajectories references{&map.places, &odometry};
+  if (query == nullptr) {
+    JudgeByNeighbours(options.neighbourhood, options.match, references,
+                      references, options.min_index_gap, executor, on_progress,
+                      matches);
+    return;
+  }
+  const std::map<SubmapId, OdometryPose> query_odometry =
+      OdometryPoses(query->state);
+  JudgeByNeighbours(options.neighbourhood, options.match, references,
+                    {&query->places, &query_odometry}, std::nullopt, executor,
+                    on_progress, matches);
 }
 
 absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
@@ -81,8 +115,13 @@ absl::Status RunMatch() {
       LoadOptionsOfMethod(FLAGS_method);
   if (!method.ok()) return method.status();
   if (method->options.loop_closing.match.method != Method::kSdf &&
-      (FLAGS_agree || !FLAGS_terms.empty())) {
-    return UsageError("--agree and --terms need method sdf");
+      (FLAGS_agree || FLAGS_alone || !FLAGS_terms.empty())) {
+    return UsageError("--agree, --alone and --terms need method sdf");
+  }
+  if (!FLAGS_neighbour_terms.empty() &&
+      !AsksNeighbours(method->options.loop_closing)) {
+    return UsageError(
+        "--neighbour_terms needs method sdf, and neighbours that are asked");
   }
   if (method->describes_clouds && !FLAGS_places.empty()) {
     return UsageError("--places needs method sdf or paper");
@@ -102,18 +141,22 @@ absl::Status RunMatch() {
                                on_describe);
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
-  std::optional<MapState> query_state;
+  std::optional<DescribedMap> query;
   if (FLAGS_query.empty()) {
     matches =
         MatchWithin(stages.match, retrieval, map->places, stages.min_index_gap,
                     executor, progress.Begin("match and verify"));
   } else {
-    absl::StatusOr<DescribedMap> query = Describe(
+    absl::StatusOr<DescribedMap> described = Describe(
         *method, FLAGS_query, executor, progress.Begin("read and describe"));
-    if (!query.ok()) return query.status();
+    if (!described.ok()) return described.status();
+    query = *std::move(described);
     matches = MatchBetween(stages.match, retrieval, map->places, query->places,
                            executor, progress.Begin("match and verify"));
-    query_state = std::move(query->state);
+  }
+  if (AsksNeighbours(stages)) {
+    AskNeighbours(stages, *map, query ? &*query : nullptr, executor,
+                  progress.Begin("ask neighbours"), &matches);
   }
   std::vector<MatchRow> rows;
   for (const Match& match : matches) {
@@ -121,8 +164,8 @@ absl::Status RunMatch() {
                          VerdictName(match.verdict)));
   }
   if (FLAGS_agree) {
-    RefuseInconsistent(stages.consistency, map->state, query_state, matches,
-                       &rows);
+    RefuseInconsistent(stages.consistency, map->state,
+                       query ? &query->state : nullptr, matches, &rows);
   }
   if (const absl::Status status = WriteMatches(FLAGS_output, rows);
       !status.ok()) {
@@ -130,6 +173,11 @@ absl::Status RunMatch() {
   }
   if (!FLAGS_terms.empty()) {
     const absl::Status status = WriteScoreTerms(FLAGS_terms, matches);
+    if (!status.ok()) return status;
+  }
+  if (!FLAGS_neighbour_terms.empty()) {
+    const absl::Status status = WriteNeighbourhoodTerms(
+        FLAGS_neighbour_terms, stages.neighbourhood, matches);
     if (!status.ok()) return status;
   }
   if (!FLAGS_options_in_force.empty()) {
@@ -153,6 +201,7 @@ Subcommand MatchSubcommand() {
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
       "[--method sdf|paper|shape_context] [--retrieval] [--places P.places] "
+      "[--alone] "
       "[--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
@@ -161,13 +210,15 @@ Subcommand MatchSubcommand() {
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
       "log-odds of being right; paper and shape_context: number of "
       "inliers).\n\n"
+      "Each pair is judged together with the neighbours of both submaps on "
+      "their trajectories; with --alone, by itself.\n\n"
       "With --agree, an accepted match that weightier ones contradict by the "
       "odometry between them, or that is uncertain and stands alone, is "
       "accepted no more, and its verdict says which.",
       {"input", "output"},
-      {"query", "method", "retrieval", "places", "agree", "terms",
-       "options_in_force", "configuration_directory", "configuration_basename",
-       "threads"},
+      {"query", "method", "retrieval", "places", "alone", "agree", "terms",
+       "neighbour_terms", "options_in_force", "configuration_directory",
+       "configuration_basename", "threads"},
       &RunMatch};
 }
 
