@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/evaluation/shape_context.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
 #include "cartographer_sdf/sessions/merging.h"
@@ -21,6 +22,8 @@ namespace cartographer_sdf {
 
 struct Options {
   LoopClosingOptions loop_closing;
+  // The comparison method's description of submaps, `--method shape_context`.
+  CloudPlaceOptions shape_context;
   RelocalizationOptions relocalization;
   MergingOptions merging;
   ReportOptions report;

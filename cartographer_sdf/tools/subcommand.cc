@@ -7,6 +7,7 @@ namespace cartographer_sdf {
 
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
+Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
 Subcommand MergeSubcommand();
@@ -19,6 +20,7 @@ std::vector<Subcommand> AllSubcommands() {
           RelocalizeSubcommand(),
           MergeSubcommand(),
           Evaluate(),
+          Figures(),
           SimulateSubcommand(),
           Info()};
 }
