@@ -36,7 +36,6 @@ DEFINE_string(
 DEFINE_string(
     sdf_configuration_basename, "sdf_live.lua",
     "The searcher's configuration file. If empty, Cartographer runs alone.");
-DEFINE_string(map, "", "A frozen map to localise in, a .pbstream.");
 DEFINE_double(start, 0., "Seconds of the recording to leave out.");
 DEFINE_double(duration, 0.,
               "Seconds of the recording to drive; 0 for all that there are.");

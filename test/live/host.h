@@ -7,6 +7,7 @@
 #define TEST_LIVE_HOST_H_
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 

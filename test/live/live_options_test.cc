@@ -5,6 +5,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf {
@@ -14,7 +15,7 @@ using ::testing::HasSubstr;
 
 TEST(LiveOptionsTest, ShippedFileEqualsTheDefaults) {
   const auto options =
-      LoadLiveOptions({TEST_CONFIGURATION_DIRECTORY}, "sdf_live.lua");
+      LoadLiveOptions({kTestConfigurationDirectory}, "sdf_live.lua");
   ASSERT_TRUE(options.ok()) << options.status();
   EXPECT_EQ(FormatLiveOptions(*options), FormatLiveOptions(LiveOptions()));
 }
@@ -25,7 +26,7 @@ TEST(LiveOptionsTest, UsersOverrideTheShippedFile) {
                   "include \"sdf_live.lua\"\nSDF_LIVE.enabled = false\n"
                   "SDF_LIVE.localization.min_score = 9.\nreturn SDF_LIVE\n");
   const auto options = LoadLiveOptions(
-      {directory.path(), TEST_CONFIGURATION_DIRECTORY}, "mine.lua");
+      {directory.path(), kTestConfigurationDirectory}, "mine.lua");
   ASSERT_TRUE(options.ok()) << options.status();
   EXPECT_FALSE(options->enabled);
   EXPECT_EQ(options->localization.min_score, 9.);
@@ -37,7 +38,7 @@ TEST(LiveOptionsTest, SaysWhatIsWrong) {
     directory.Write("mine.lua", "include \"sdf_live.lua\"\n" + line +
                                     "\nreturn SDF_LIVE\n");
     const auto options = LoadLiveOptions(
-        {directory.path(), TEST_CONFIGURATION_DIRECTORY}, "mine.lua");
+        {directory.path(), kTestConfigurationDirectory}, "mine.lua");
     return std::string(options.status().message());
   };
   EXPECT_THAT(error_of("SDF_LIVE.enbled = true"), HasSubstr("enbled"));
