@@ -239,6 +239,23 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, GroupingOptions& options) {
+  visit("max_distance_meters", options.max_distance_meters);
+  visit("max_rotation", options.max_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, AuditOptions& options) {
+  visit("grouping", options.grouping);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
+  visit("min_margin", options.min_margin);
+  visit("min_score", options.min_score);
+  visit("max_agreeing_translation_meters",
+        options.max_agreeing_translation_meters);
+  visit("max_agreeing_rotation", options.max_agreeing_rotation);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, ReportOptions& options) {
   visit("map_picture_pixels", options.map_picture_pixels);
   visit("closure_picture_pixels", options.closure_picture_pixels);
@@ -248,6 +265,7 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
+  visit("audit", options.audit);
   visit("report", options.report);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/audit/audit.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
 
@@ -19,6 +20,7 @@ namespace cartographer_sdf {
 
 struct Options {
   LoopClosingOptions loop_closing;
+  AuditOptions audit;
   ReportOptions report;
 };
 

@@ -4,7 +4,6 @@
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <optional>
 
@@ -12,32 +11,6 @@
 
 namespace cartographer_sdf {
 namespace {
-
-class StageClock {
- public:
-  StageClock(const StageCallback& on_stage,
-             std::vector<std::pair<std::string, double>>* const seconds)
-      : on_stage_(on_stage), seconds_(seconds) {}
-
-  ProgressCallback Begin(const std::string& stage) {
-    End();
-    seconds_->emplace_back(stage, 0.);
-    begin_ = std::chrono::steady_clock::now();
-    return on_stage_ ? on_stage_(stage) : ProgressCallback();
-  }
-  void End() {
-    if (!begin_) return;
-    seconds_->back().second = std::chrono::duration<double>(
-                                  std::chrono::steady_clock::now() - *begin_)
-                                  .count();
-    begin_.reset();
-  }
-
- private:
-  const StageCallback& on_stage_;
-  std::vector<std::pair<std::string, double>>* const seconds_;
-  std::optional<std::chrono::steady_clock::time_point> begin_;
-};
 
 std::vector<SurfacePoint> ToSurfacePoints(const PointCloud2& cloud) {
   std::vector<SurfacePoint> points;
@@ -120,19 +93,6 @@ void LiftClosures(const LiftingOptions& options, const PoseGraph& pose_graph,
   });
 }
 
-OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
-                                   const PoseGraph& pose_graph) {
-  OptimizationOptions in_force = options.optimization;
-  if (!options.infer_odometry_weights) return in_force;
-  const std::optional<OdometryWeights> inferred =
-      InferOdometryWeights(options.optimization, pose_graph);
-  if (inferred) {
-    in_force.odometry_translation_weight = inferred->translation;
-    in_force.odometry_rotation_weight = inferred->rotation;
-  }
-  return in_force;
-}
-
 }  // namespace
 
 std::string Validate(const LoopClosingOptions& options) {
@@ -177,6 +137,19 @@ std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
         sum == sums.end() ? 0. : sum->second.first / sum->second.second};
   }
   return poses;
+}
+
+OptimizationOptions OptimizationInForce(const LoopClosingOptions& options,
+                                        const PoseGraph& pose_graph) {
+  OptimizationOptions in_force = options.optimization;
+  if (!options.infer_odometry_weights) return in_force;
+  const std::optional<OdometryWeights> inferred =
+      InferOdometryWeights(options.optimization, pose_graph);
+  if (inferred) {
+    in_force.odometry_translation_weight = inferred->translation;
+    in_force.odometry_rotation_weight = inferred->rotation;
+  }
+  return in_force;
 }
 
 absl::StatusOr<LoopClosingResult> CloseLoops(
@@ -228,7 +201,7 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   LiftClosures(options.lifting, result.state.pose_graph, map->places, *scans,
                executor, &result.closures);
 
-  result.optimization = OptionsInForce(options, result.state.pose_graph);
+  result.optimization = OptimizationInForce(options, result.state.pose_graph);
   OptimizedGraph optimized = OptimizeAndWithdraw(
       options.withdrawal, result.optimization, frozen_trajectories,
       result.state.pose_graph, &result.closures, clock.Begin("optimise"));

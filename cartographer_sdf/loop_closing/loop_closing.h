@@ -7,7 +7,6 @@
 #ifndef CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
 #define CARTOGRAPHER_SDF_LOOP_CLOSING_LOOP_CLOSING_H_
 
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -17,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/closure/consistency.h"
 #include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/loop_closing/stage_clock.h"
 #include "cartographer_sdf/loop_closing/torn_submaps.h"
 #include "cartographer_sdf/loop_closing/withdrawal.h"
 #include "cartographer_sdf/pose_graph/lifting.h"
@@ -64,15 +64,16 @@ struct LoopClosingResult {
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Called at the beginning of each stage with its name; returns what is told of
-// its progress. May be empty.
-using StageCallback = std::function<ProgressCallback(const std::string& stage)>;
-
 // Fails where the file can't be read. Frozen trajectories stay where they are.
 [[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
     const LoopClosingOptions& options, const std::string& path,
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage = {});
+
+// `options.optimization`, with the odometry weights that the map shows where
+// they are to be inferred and it shows any.
+[[nodiscard]] OptimizationOptions OptimizationInForce(
+    const LoopClosingOptions& options, const PoseGraph& pose_graph);
 
 // Where local SLAM says that the submaps are, and how far the robot had driven.
 [[nodiscard]] std::map<SubmapId, OdometryPose> OdometryPoses(

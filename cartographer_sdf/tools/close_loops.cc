@@ -5,10 +5,7 @@
 #include <map>
 #include <set>
 
-#include "absl/strings/numbers.h"
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/pbstream/map_file.h"
@@ -21,26 +18,9 @@
 DEFINE_string(closures, "",
               "CSV file for the closures that went into the graph, with their "
               "evidence. None if empty.");
-DEFINE_string(frozen_trajectories, "",
-              "Trajectories that stay where they are, by their numbers, "
-              "separated by commas.");
 
 namespace cartographer_sdf {
 namespace {
-
-absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags() {
-  std::set<int> trajectories;
-  for (const absl::string_view text :
-       absl::StrSplit(FLAGS_frozen_trajectories, ',', absl::SkipEmpty())) {
-    int trajectory = -1;
-    if (!absl::SimpleAtoi(text, &trajectory) || trajectory < 0) {
-      return UsageError(
-          absl::StrCat("--frozen_trajectories: ", text, " is no trajectory"));
-    }
-    trajectories.insert(trajectory);
-  }
-  return trajectories;
-}
 
 absl::Status WriteClosures(const std::string& path,
                            const std::vector<ClosureOutcome>& closures) {

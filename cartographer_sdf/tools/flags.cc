@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -28,6 +29,9 @@ DEFINE_string(configuration_directory, "",
               "searched before those that come with the program.");
 DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
               "The configuration file; it may include others.");
+DEFINE_string(frozen_trajectories, "",
+              "Trajectories that stay where they are, by their numbers, "
+              "separated by commas.");
 DEFINE_int32(threads, 0,
              "Number of threads; 0 for as many as the machine has. The result "
              "does not depend on it.");
@@ -70,6 +74,20 @@ absl::StatusOr<int> NumThreadsOfFlags() {
   if (FLAGS_threads > 0) return FLAGS_threads;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1,
                     kMaxThreads);
+}
+
+absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags() {
+  std::set<int> trajectories;
+  for (const absl::string_view text :
+       absl::StrSplit(FLAGS_frozen_trajectories, ',', absl::SkipEmpty())) {
+    int trajectory = -1;
+    if (!absl::SimpleAtoi(text, &trajectory) || trajectory < 0) {
+      return UsageError(
+          absl::StrCat("--frozen_trajectories: ", text, " is no trajectory"));
+    }
+    trajectories.insert(trajectory);
+  }
+  return trajectories;
 }
 
 }  // namespace cartographer_sdf

@@ -6,6 +6,7 @@
 #ifndef CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 #define CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@ DECLARE_string(truth);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);
+DECLARE_string(frozen_trajectories);
 DECLARE_int32(threads);
 
 namespace cartographer_sdf {
@@ -33,6 +35,9 @@ namespace cartographer_sdf {
 
 // As of --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();
+
+// As of --frozen_trajectories.
+[[nodiscard]] absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags();
 
 }  // namespace cartographer_sdf
 

@@ -19,8 +19,9 @@ DEFINE_double(plan_width, 40., "Of the office that is invented [m].");
 DEFINE_double(plan_height, 30., "Of the office that is invented [m].");
 DEFINE_double(length, 360., "How far the robot drives [m].");
 DEFINE_uint32(seed, 1,
-              "Of the drive, its drift and the noise. Two sessions in one "
-              "building differ in it alone.");
+              "Of what is random: in simulate the drive, its drift and the "
+              "noise, so that two sessions in one building differ in it "
+              "alone.");
 
 namespace cartographer_sdf {
 namespace {

@@ -12,15 +12,22 @@ constexpr char kUsagePayload[] = "cartographer_sdf/usage";
 
 }  // namespace
 
+Subcommand AuditSubcommand();
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
+Subcommand FalsifySubcommand();
 Subcommand Info();
 Subcommand MatchSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(), Evaluate(),
-          SimulateSubcommand(), Info()};
+  return {CloseLoopsSubcommand(),
+          MatchSubcommand(),
+          AuditSubcommand(),
+          Evaluate(),
+          SimulateSubcommand(),
+          FalsifySubcommand(),
+          Info()};
 }
 
 absl::Status UsageError(const std::string& message) {
