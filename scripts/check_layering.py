@@ -45,7 +45,7 @@ OFFLINE = {
     "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {
-    "live": ["geometry", "grid", "closure", "recognition", "config"],
+    "live": [*CORE, "pose_graph", "pbstream", "place_store", "config", "proto"],
     "tools": [*CORE, *OFFLINE, "live"],
 }
 ALLOWED = {**CORE, **OFFLINE, **TOP}
@@ -250,7 +250,7 @@ SAMPLES = [
     ("cartographer_sdf/live/a.cc",
      source("cartographer_sdf/recognition/a.h", "cartographer/mapping/map_builder.h"), None),
     ("cartographer_sdf/live/b.cc", source("cartographer/mapping/internal/2d/a.h"), "internal"),
-    ("cartographer_sdf/live/c.cc", source("cartographer_sdf/pbstream/map_file.h"),
+    ("cartographer_sdf/live/c.cc", source("cartographer_sdf/report/picture.h"),
      "live/ must not include"),
     ("cartographer_sdf/tools/a.cc", source("cartographer/mapping/map_builder.h"),
      "only live/ may include"),

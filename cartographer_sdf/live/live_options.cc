@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/live/live_options.h"
+
+#include "cartographer_sdf/config/lua_dictionary.h"
+#include "cartographer_sdf/config/option_binding.h"
+#include "cartographer_sdf/config/option_keys.h"
+
+namespace cartographer_sdf {
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, LocalizationOptions& options) {
+  visit("enabled", options.enabled);
+  visit("query_interval_meters", options.query_interval_meters);
+  visit("window_meters", options.window_meters);
+  visit("resolution_meters", options.resolution_meters);
+  visit("min_score", options.min_score);
+  visit("min_lead", options.min_lead);
+  visit("min_num_queries", options.min_num_queries);
+  visit("max_translation_difference_meters",
+        options.max_translation_difference_meters);
+  visit("max_rotation_difference", options.max_rotation_difference);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, LiveOptions& options) {
+  visit("enabled", options.enabled);
+  visit("inject_constraints", options.inject_constraints);
+  visit("log_closures", options.log_closures);
+  visit("use_place_files", options.use_place_files);
+  visit("min_index_gap", options.min_index_gap);
+  visit("place", options.place);
+  visit("match", options.match);
+  visit("retrieval", options.retrieval);
+  visit("consistency", options.consistency);
+  visit("lifting", options.lifting);
+  visit("localization", options.localization);
+}
+
+namespace {
+
+constexpr char kTableName[] = "SDF_LIVE";
+
+}  // namespace
+
+LiveOptions::LiveOptions() { retrieval.max_num_candidates = 15; }
+
+std::string Validate(const LocalizationOptions& options) {
+  if (!(options.query_interval_meters > 0.)) {
+    return "query_interval_meters must be positive";
+  }
+  if (!(options.window_meters > 0.)) return "window_meters must be positive";
+  if (!(options.resolution_meters >= 0.01 && options.resolution_meters <= 1.)) {
+    return "resolution_meters must lie between 0.01 and 1";
+  }
+  if (!(options.min_lead >= 0.)) return "min_lead must not be negative";
+  if (options.min_num_queries < 1) return "min_num_queries must be positive";
+  if (!(options.max_translation_difference_meters > 0. &&
+        options.max_rotation_difference > 0.)) {
+    return "max_translation_difference_meters and max_rotation_difference must "
+           "be positive";
+  }
+  return "";
+}
+
+std::string Validate(const LiveOptions& options) {
+  if (options.min_index_gap < 1) return "min_index_gap must be positive";
+  if (options.match.method != Method::kSdf) {
+    return "match.method must be \"sdf\": the paper's method verifies nothing";
+  }
+  for (const std::string& error :
+       {Validate(options.place), Validate(options.match),
+        Validate(options.retrieval), Validate(options.consistency),
+        Validate(options.lifting), Validate(options.localization)}) {
+    if (!error.empty()) return error;
+  }
+  return "";
+}
+
+absl::StatusOr<LiveOptions> LoadLiveOptions(
+    const std::vector<std::string>& directories, const std::string& basename) {
+  const absl::StatusOr<LuaDictionary> dictionary =
+      LoadLuaDictionary(directories, basename, kTableName);
+  if (!dictionary.ok()) return dictionary.status();
+  return ReadOptions<LiveOptions>(*dictionary);
+}
+
+std::string FormatLiveOptions(const LiveOptions& options) {
+  return FormatOptions(kTableName, options) + "\nreturn " + kTableName + "\n";
+}
+
+}  // namespace cartographer_sdf
