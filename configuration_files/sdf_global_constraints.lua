@@ -298,7 +298,7 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- [m], [rad] What is doubtful stays where the map that is made without it
     -- agrees to this. Larger: fewer right constraints are dropped.
     max_agreeing_translation_meters = 0.3,
-    max_agreeing_rotation = 0.05,
+    max_agreeing_rotation = 0.1,
   },
   -- The HTML page that shows what was done.
   report = {

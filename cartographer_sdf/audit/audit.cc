@@ -18,20 +18,36 @@ std::vector<AuditedGroup> ExamineGroups(
     const std::map<SubmapId, Place>& places,
     const std::vector<ConstraintGroup>& groups, const Executor& executor,
     const ProgressCallback& on_progress) {
+  // Groups of one pair stand together; recognition is asked once for all.
+  std::vector<size_t> first_of_pair;
+  for (size_t k = 0; k < groups.size(); ++k) {
+    if (k == 0 || groups[k].reference != groups[k - 1].reference ||
+        groups[k].query != groups[k - 1].query) {
+      first_of_pair.push_back(k);
+    }
+  }
+  const size_t num_pairs = first_of_pair.size();
+  first_of_pair.push_back(groups.size());
   std::vector<AuditedGroup> audited(groups.size());
   std::mutex progress_mutex;
   size_t num_done = 0;
-  executor(groups.size(), [&](const size_t k) {
-    AuditedGroup& group = audited[k];
-    group.group = groups[k];
-    group.evidence = ExaminePose(
-        match_options, options.grouping.max_distance_meters,
-        options.grouping.max_rotation, places.at(group.group.reference),
-        places.at(group.group.query), group.group.T_reference_query);
+  executor(num_pairs, [&](const size_t pair) {
+    const size_t first = first_of_pair[pair];
+    const Place& reference = places.at(groups[first].reference);
+    const Place& query = places.at(groups[first].query);
+    const std::optional<Match> recognized =
+        MatchPlaces(match_options, reference, query);
+    for (size_t k = first; k < first_of_pair[pair + 1]; ++k) {
+      audited[k].group = groups[k];
+      audited[k].evidence = ExaminePose(
+          match_options.verification, options.grouping.max_distance_meters,
+          options.grouping.max_rotation, reference.surface, query.surface,
+          recognized, groups[k].T_reference_query);
+    }
     if (!on_progress) return;
     const std::lock_guard<std::mutex> lock(progress_mutex);
     on_progress(static_cast<double>(++num_done) /
-                static_cast<double>(groups.size()));
+                static_cast<double>(num_pairs));
   });
   return audited;
 }

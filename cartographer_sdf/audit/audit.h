@@ -43,7 +43,7 @@ struct AuditOptions {
   // A doubtful constraint stays where the map that is made without any of them
   // agrees with it to this [m], [rad].
   double max_agreeing_translation_meters = 0.3;
-  double max_agreeing_rotation = 0.05;
+  double max_agreeing_rotation = 0.1;
 };
 [[nodiscard]] std::string Validate(const AuditOptions& options);
 

@@ -59,17 +59,18 @@ Eigen::Vector2d MiddleOf(const SurfaceModel& model) {
   return sum / static_cast<double>(model.observed_points.size());
 }
 
-PoseEvidence ExaminePose(const MatchOptions& options, const double max_shift,
-                         const double max_turn, const Place& reference,
-                         const Place& query,
+PoseEvidence ExaminePose(const VerificationOptions& options,
+                         const double max_shift, const double max_turn,
+                         const SurfaceModel& reference,
+                         const SurfaceModel& query,
+                         const std::optional<Match>& recognized,
                          const Rigid2& claimed_T_reference_query) {
-  const VerificationOptions& verification = options.verification;
-  const Eigen::Vector2d middle = MiddleOf(query.surface);
+  const Eigen::Vector2d middle = MiddleOf(query);
   PoseEvidence evidence;
   evidence.T_reference_query = claimed_T_reference_query;
   const std::optional<Verification> registered =
-      VerifyHypotheses(WithoutThresholds(verification), reference.surface,
-                       query.surface, {claimed_T_reference_query});
+      VerifyHypotheses(WithoutThresholds(options), reference, query,
+                       {claimed_T_reference_query});
   if (registered) {
     const Rigid2& pose = registered->T_reference_query;
     evidence.shift =
@@ -85,25 +86,22 @@ PoseEvidence ExaminePose(const MatchOptions& options, const double max_shift,
     evidence.agreement = registered->agreement;
     evidence.margin = registered->margin;
   } else {
-    evidence.agreement =
-        AgreementAsClaimed(verification, reference.surface, query.surface,
-                           claimed_T_reference_query);
+    evidence.agreement = AgreementAsClaimed(options, reference, query,
+                                            claimed_T_reference_query);
   }
-  const double without_margin =
-      Score(verification.score_weights, evidence.agreement, 0.);
-  const std::optional<Match> match = MatchPlaces(options, reference, query);
-  if (match && match->verification) {
-    const Verification& other = *match->verification;
+  const ScoreWeights& weights = options.score_weights;
+  const double without_margin = Score(weights, evidence.agreement, 0.);
+  if (recognized && recognized->verification) {
+    const Verification& other = *recognized->verification;
     evidence.recognized_T_reference_query = other.T_reference_query;
     if (!AreNear(other.T_reference_query, evidence.T_reference_query, middle,
                  kDistinctDistance, kDistinctRotation)) {
-      evidence.margin = std::min(
-          evidence.margin, without_margin - Score(verification.score_weights,
-                                                  other.agreement, 0.));
+      evidence.margin =
+          std::min(evidence.margin,
+                   without_margin - Score(weights, other.agreement, 0.));
     }
   }
-  evidence.score =
-      Score(verification.score_weights, evidence.agreement, evidence.margin);
+  evidence.score = Score(weights, evidence.agreement, evidence.margin);
   return evidence;
 }
 

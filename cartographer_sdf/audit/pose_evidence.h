@@ -12,7 +12,6 @@
 
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/recognition/place.h"
 #include "cartographer_sdf/verification/surface_model.h"
 #include "cartographer_sdf/verification/verification.h"
 
@@ -41,14 +40,15 @@ struct PoseEvidence {
   std::optional<Rigid2> recognized_T_reference_query;
 };
 
-// Registers the claimed pose and judges it as verification judges a match, with
-// the pose that recognition finds among the rivals. A claim that registration
-// moves by more than these [m], [rad] is not held by the walls. Some
-// milliseconds.
-[[nodiscard]] PoseEvidence ExaminePose(const MatchOptions& options,
+// Registers the claimed pose and judges it as verification judges a match.
+// `recognized`, what MatchPlaces says of the pair, is among the rivals. A claim
+// that registration moves by more than these [m], [rad] is not held by the
+// walls. Some milliseconds.
+[[nodiscard]] PoseEvidence ExaminePose(const VerificationOptions& options,
                                        double max_shift, double max_turn,
-                                       const Place& reference,
-                                       const Place& query,
+                                       const SurfaceModel& reference,
+                                       const SurfaceModel& query,
+                                       const std::optional<Match>& recognized,
                                        const Rigid2& claimed_T_reference_query);
 
 }  // namespace cartographer_sdf
