@@ -55,6 +55,13 @@ else
   options+=(-DCARTOGRAPHER_SDF_WARNINGS_AS_ERRORS=ON)
 fi
 "${benchmark}" && options+=(-DCARTOGRAPHER_SDF_BUILD_BENCHMARKS=ON)
+# Each test is a program of its own, so links add up.
+for linker in lld gold; do
+  if [[ -z "${LDFLAGS:-}" ]] && command -v "ld.${linker}" >/dev/null; then
+    options+=("-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=${linker}")
+    break
+  fi
+done
 # An existing directory keeps the generator it was made with.
 [[ -f "${BUILD_DIR}/CMakeCache.txt" ]] || options+=(-G Ninja)
 

@@ -10,6 +10,7 @@
 #include "cartographer_sdf/config/option_keys.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf {
@@ -20,13 +21,13 @@ using ::testing::HasSubstr;
 constexpr char kBasename[] = "sdf_global_constraints.lua";
 
 TEST(OptionsTest, ShippedFileEqualsTheDefaults) {
-  const auto options = LoadOptions({TEST_CONFIGURATION_DIRECTORY}, kBasename);
+  const auto options = LoadOptions({kTestConfigurationDirectory}, kBasename);
   ASSERT_TRUE(options.ok()) << options.status();
   EXPECT_EQ(FormatOptions(*options), FormatOptions(Options()));
 }
 
 TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
-  const auto options = LoadOptions({TEST_CONFIGURATION_DIRECTORY}, "paper.lua");
+  const auto options = LoadOptions({kTestConfigurationDirectory}, "paper.lua");
   ASSERT_TRUE(options.ok()) << options.status();
   Options paper;
   paper.loop_closing.place = PaperPlaceOptions();
@@ -82,7 +83,7 @@ TEST(OptionsTest, UsersOverrideTheShippedFile) {
                   "SDF_GLOBAL_CONSTRAINTS.report.max_closure_pictures = -1\n"
                   "return SDF_GLOBAL_CONSTRAINTS\n");
   const auto options =
-      LoadOptions({directory.path(), TEST_CONFIGURATION_DIRECTORY}, "mine.lua");
+      LoadOptions({directory.path(), kTestConfigurationDirectory}, "mine.lua");
   ASSERT_FALSE(options.ok());
   EXPECT_THAT(std::string(options.status().message()),
               HasSubstr("mine.lua: SDF_GLOBAL_CONSTRAINTS.report."

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "glog/logging.h"
+#include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
 struct ProgramResult {
@@ -26,7 +27,7 @@ inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
   const cartographer_sdf::testing::TemporaryDirectory directory;
   const std::string output = directory.File("output");
   const std::string error = directory.File("error");
-  std::vector<std::string> words = {TEST_PROGRAM};
+  std::vector<std::string> words = {kTestProgram};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

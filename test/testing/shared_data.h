@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <string>
 
+#include "test/testing/paths.h"
+
 inline std::string SharedDataPath(const std::string& name) {
-  return std::string(TEST_SHARED_DATA_DIRECTORY) + "/" + name;
+  return std::string(kTestSharedDataDirectory) + "/" + name;
 }
 
 #define SKIP_WITHOUT_SHARED_DATA(name)                     \
