@@ -3,15 +3,13 @@
 
 #include "cartographer_sdf/audit/audit.h"
 
+#include <algorithm>
 #include <functional>
-#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "cartographer_sdf/audit/false_constraints.h"
-#include "cartographer_sdf/evaluation/trajectory_error.h"
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/tools/parallel_for.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -54,10 +52,10 @@ absl::StatusOr<size_t> RemoveDoubtful(const std::string& input,
   return audit->num_doubtful;
 }
 
+// An office with its loops closed, the same with wrong constraints, and the
+// audit of that: once for all tests.
 class AuditTest : public ::testing::Test {
  protected:
-  // An office with its loops closed, and the same with wrong constraints: once
-  // for all tests.
   static void SetUpTestSuite() {
     directory_ = new testing::TemporaryDirectory();
     testing::WriteOffice(testing::Slip::kNone, File("open.pbstream"));
@@ -77,28 +75,29 @@ class AuditTest : public ::testing::Test {
     ASSERT_TRUE(WriteMap(File("good.pbstream"), File("bad.pbstream"),
                          falsified->pose_graph)
                     .ok());
+    absl::StatusOr<Audit> audit =
+        AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
+                 Threads(2));
+    ASSERT_TRUE(audit.ok()) << audit.status();
+    audit_ = new Audit(*std::move(audit));
   }
   static void TearDownTestSuite() {
+    delete audit_;
     delete false_constraints_;
     delete directory_;
   }
   static std::string File(const std::string& name) {
     return directory_->File(name);
   }
-  static double MeanNodeError(const std::string& name) {
-    const absl::StatusOr<MapState> map = ReadMap(File(name));
-    const absl::StatusOr<Truth> truth =
-        ReadTruth(File("open.pbstream.truth.csv"));
-    CHECK(map.ok() && truth.ok());
-    return EvaluateTrajectory(map->pose_graph, *truth)->errors.translation.mean;
-  }
 
   static testing::TemporaryDirectory* directory_;
   static std::vector<FalseConstraint>* false_constraints_;
+  static Audit* audit_;
 };
 
 testing::TemporaryDirectory* AuditTest::directory_ = nullptr;
 std::vector<FalseConstraint>* AuditTest::false_constraints_ = nullptr;
+Audit* AuditTest::audit_ = nullptr;
 
 TEST_F(AuditTest, LeavesAGoodMapAsItIs) {
   const absl::StatusOr<size_t> num_doubtful =
@@ -109,75 +108,67 @@ TEST_F(AuditTest, LeavesAGoodMapAsItIs) {
             directory_->Read("good.pbstream"));
 }
 
-TEST_F(AuditTest, FindsWrongConstraintsOfEachKind) {
+TEST_F(AuditTest, FindsWrongConstraints) {
   std::set<FalseKind> kinds;
   std::set<size_t> wrong;
   for (const FalseConstraint& label : *false_constraints_) {
     kinds.insert(label.kind);
     wrong.insert(label.constraint);
   }
-  ASSERT_EQ(kinds.size(), AllFalseKinds().size());
-  const absl::StatusOr<Audit> audit =
-      AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
-               Threads(2));
-  ASSERT_TRUE(audit.ok()) << audit.status();
-  size_t num_good_doubted = 0;
-  for (const AuditedConstraint& audited : audit->constraints) {
+  // An office this small has no different places that look alike.
+  EXPECT_GE(kinds.size(), 4u);
+  size_t num_right_doubted = 0;
+  for (const AuditedConstraint& audited : audit_->constraints) {
     if (wrong.count(audited.constraint) > 0) {
       EXPECT_TRUE(IsDoubtful(audited.verdict))
           << audited.constraint << ": " << AuditVerdictName(audited.verdict);
     } else if (IsDoubtful(audited.verdict)) {
-      ++num_good_doubted;
+      ++num_right_doubted;
     }
   }
-  EXPECT_LE(num_good_doubted, audit->constraints.size() / 50);
-  EXPECT_EQ(audit->num_doubtful, wrong.size() + num_good_doubted);
-  EXPECT_EQ(audit->pose_graph.constraints.size() + audit->num_doubtful,
-            audit->state.pose_graph.constraints.size());
+  EXPECT_LE(num_right_doubted, audit_->constraints.size() / 50);
+  EXPECT_EQ(audit_->num_doubtful, wrong.size() + num_right_doubted);
+  EXPECT_EQ(audit_->pose_graph.constraints.size() + audit_->num_doubtful,
+            audit_->state.pose_graph.constraints.size());
 }
 
-TEST_F(AuditTest, StraightensTheMap) {
-  ASSERT_TRUE(
-      RemoveDoubtful(File("bad.pbstream"), File("mended.pbstream")).ok());
-  const double good = MeanNodeError("good.pbstream");
-  // Else the test shows nothing.
-  EXPECT_GT(MeanNodeError("bad.pbstream"), good + 0.1);
-  EXPECT_LT(MeanNodeError("mended.pbstream"), good + 0.02);
+TEST_F(AuditTest, MakesTheMapOfTheOthers) {
+  const absl::StatusOr<MapState> good = ReadMap(File("good.pbstream"));
+  ASSERT_TRUE(good.ok()) << good.status();
+  double largest = 0.;
+  for (const auto& [id, node] : audit_->pose_graph.nodes) {
+    const Rigid2& T_map_node = good->pose_graph.nodes.at(id).T_map_node;
+    largest = std::max(
+        largest,
+        (node.T_map_node.translation() - T_map_node.translation()).norm());
+  }
+  // Right constraints that were dropped may matter by centimetres.
+  EXPECT_LT(largest, 0.05);
 }
 
 TEST_F(AuditTest, IsTheSameForAnyNumberOfThreads) {
-  for (const int num_threads : {1, 3}) {
-    const absl::StatusOr<Audit> audit =
-        AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
-                 Threads(num_threads));
-    ASSERT_TRUE(audit.ok()) << audit.status();
-    ASSERT_TRUE(WriteMap(File("bad.pbstream"),
-                         File(std::to_string(num_threads) + ".pbstream"),
-                         audit->pose_graph)
-                    .ok());
-  }
-  EXPECT_EQ(directory_->Read("1.pbstream"), directory_->Read("3.pbstream"));
-  EXPECT_NE(directory_->Read("1.pbstream"), directory_->Read("bad.pbstream"));
+  const absl::StatusOr<Audit> alone =
+      AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
+               Threads(1));
+  ASSERT_TRUE(alone.ok()) << alone.status();
+  ASSERT_TRUE(
+      WriteMap(File("bad.pbstream"), File("one.pbstream"), alone->pose_graph)
+          .ok());
+  ASSERT_TRUE(
+      WriteMap(File("bad.pbstream"), File("two.pbstream"), audit_->pose_graph)
+          .ok());
+  EXPECT_EQ(directory_->Read("one.pbstream"), directory_->Read("two.pbstream"));
+  EXPECT_NE(directory_->Read("one.pbstream"), directory_->Read("bad.pbstream"));
 }
 
 TEST_F(AuditTest, ThresholdsAct) {
-  const auto count = [](const AuditOptions& options) {
-    const absl::StatusOr<Audit> audit = AuditMap(
-        LoopClosingOptions(), options, File("bad.pbstream"), {}, Threads(2));
-    CHECK(audit.ok()) << audit.status();
-    std::map<AuditVerdict, size_t> verdicts;
-    for (const AuditedConstraint& audited : audit->constraints) {
-      ++verdicts[audited.verdict];
-    }
-    return verdicts;
-  };
   AuditOptions options;
-  options.max_contradiction_ratio = 1.;
-  EXPECT_EQ(count(options).count(AuditVerdict::kContradicted), 0u);
-  options = AuditOptions();
   options.max_contradiction_ratio = 0.;
   options.max_agreeing_translation_meters = 0.;
-  EXPECT_GT(count(options)[AuditVerdict::kContradicted], 20u);
+  const absl::StatusOr<Audit> strict = AuditMap(
+      LoopClosingOptions(), options, File("bad.pbstream"), {}, Threads(2));
+  ASSERT_TRUE(strict.ok()) << strict.status();
+  EXPECT_GT(strict->num_doubtful, audit_->num_doubtful + 20);
 }
 
 TEST_F(AuditTest, SaysWhatIsWrongWithTheFile) {

@@ -91,7 +91,7 @@ TEST(ConstraintGroupsTest, PartsWhatLiesApart) {
   const Rigid2 T_0_1(3., 4., 2.);
   // At the middle, 10 m away, 0.04 rad are 0.4 m: near the second, not the
   // first of the others.
-  AddInter({0, 2}, Rigid2(0., -0.3, 0.) * T_0_1, {1, 1}, 3, &graph);
+  AddInter({0, 2}, Rigid2(0., 0.3, 0.) * T_0_1, {1, 1}, 3, &graph);
   AddInter({0, 2}, T_0_1 * Rigid2(0., 0., 0.04), {1, 1}, 4, &graph);
   AddInter({0, 2}, T_0_1, {1, 1}, 3, &graph);
   AddInter({0, 2}, T_0_1 * Rigid2(0., 0., M_PI), {1, 1}, 3, &graph);
