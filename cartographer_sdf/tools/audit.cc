@@ -88,7 +88,7 @@ absl::Status RunAudit() {
 Subcommand AuditSubcommand() {
   return Subcommand{
       "audit",
-      "find the constraints of a map that contradict its geometry",
+      "find the constraints of a map that are doubtful",
       "--input A.pbstream [--output B.pbstream] [--report DIR] "
       "[--constraints C.csv]",
       "Checks every inter-submap constraint: whether walls of one submap stand "

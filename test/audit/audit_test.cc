@@ -44,8 +44,8 @@ absl::StatusOr<size_t> RemoveDoubtful(const std::string& input,
     if (!IsDoubtful(audited.verdict)) continue;
     const Constraint& constraint =
         audit->state.pose_graph.constraints[audited.constraint];
-    LOG(INFO) << "submap " << constraint.submap << ", node " << constraint.node
-              << ": " << AuditVerdictName(audited.verdict);
+    VLOG(1) << "submap " << constraint.submap << ", node " << constraint.node
+            << ": " << AuditVerdictName(audited.verdict);
   }
   const absl::Status status = WriteMap(input, output, audit->pose_graph);
   if (!status.ok()) return status;
