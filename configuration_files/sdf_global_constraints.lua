@@ -278,6 +278,57 @@ SDF_GLOBAL_CONSTRAINTS = {
       max_num_rounds = 10,
     },
   },
+  -- Where a map, or the beginning of a drive, lies in another map (relocalize,
+  -- merge). What is not here is as in loop_closing.
+  relocalization = {
+    -- When agreeing matches of submaps are believed.
+    placement = {
+      -- [m] Places nearer together tell partly the same. Larger: more must be
+      -- seen.
+      independent_distance_meters = 10.,
+      -- One place counts at most so much (log-odds).
+      max_place_score = 10.,
+      -- Least evidence of all places (log-odds). Larger: fewer answers, fewer
+      -- wrong ones.
+      min_score = 6.5,
+      -- Least lead over the best other answer (log-odds). Larger: more refusals
+      -- where places look alike.
+      min_lead = 4.,
+      -- Largest fraction of the places that may contradict the answer. Larger:
+      -- tolerates more change since the map was made.
+      max_contradicting_fraction = 0.3,
+      -- [m], [rad] Answers that differ by less are one. Larger: tolerates more
+      -- drift within the map, overlooks nearer look-alikes.
+      same_distance_meters = 1.,
+      same_rotation = 0.2,
+      -- [m^2] Area that must have been seen at least, submap by submap.
+      min_observed_area = 20.,
+    },
+    -- Places that are made of scans: of the first seconds of a drive, and of
+    -- maps without submaps.
+    scan_places = {
+      -- Scans of each; as Cartographer's 2 * num_range_data.
+      num_scans = 120,
+      -- [m] Side of a cell; as that of the map.
+      resolution_meters = 0.05,
+      -- As Cartographer's probability_grid_range_data_inserter.
+      hit_probability = 0.55,
+      miss_probability = 0.49,
+    },
+    -- Places, evenly spaced, that are searched in the map at first; twice as
+    -- many in all each time that leaves the answer uncertain. Larger: slower
+    -- where few are enough.
+    num_first_places = 4,
+    -- Pairs of submaps that are verified where the answer lays them over each
+    -- other. Larger: more is known for and against it, slower.
+    max_num_confirmed_pairs = 150,
+  },
+  -- Several maps as one (merge). What is not here is as above.
+  merging = {
+    -- Largest fraction of overlapping pairs of submaps that may contradict each
+    -- other in the merged map. Larger: tolerates more change between the maps.
+    max_folded_fraction = 0.2,
+  },
   -- Which constraints of a map are doubtful (audit). What is not here is as in
   -- loop_closing.
   audit = {

@@ -256,6 +256,39 @@ void VisitOptions(Visitor& visit, AuditOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, PlacementOptions& options) {
+  visit("independent_distance_meters", options.independent_distance_meters);
+  visit("max_place_score", options.max_place_score);
+  visit("min_score", options.min_score);
+  visit("min_lead", options.min_lead);
+  visit("max_contradicting_fraction", options.max_contradicting_fraction);
+  visit("same_distance_meters", options.same_distance_meters);
+  visit("same_rotation", options.same_rotation);
+  visit("min_observed_area", options.min_observed_area);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ScanPlaceOptions& options) {
+  visit("num_scans", options.num_scans);
+  visit("resolution_meters", options.resolution_meters);
+  visit("hit_probability", options.hit_probability);
+  visit("miss_probability", options.miss_probability);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, RelocalizationOptions& options) {
+  visit("placement", options.placement);
+  visit("scan_places", options.scan_places);
+  visit("num_first_places", options.num_first_places);
+  visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, MergingOptions& options) {
+  visit("max_folded_fraction", options.max_folded_fraction);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, ReportOptions& options) {
   visit("map_picture_pixels", options.map_picture_pixels);
   visit("closure_picture_pixels", options.closure_picture_pixels);
@@ -265,6 +298,8 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
+  visit("relocalization", options.relocalization);
+  visit("merging", options.merging);
   visit("audit", options.audit);
   visit("report", options.report);
 }

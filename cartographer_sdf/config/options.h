@@ -15,11 +15,15 @@
 #include "cartographer_sdf/audit/audit.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
+#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/sessions/relocalization.h"
 
 namespace cartographer_sdf {
 
 struct Options {
   LoopClosingOptions loop_closing;
+  RelocalizationOptions relocalization;
+  MergingOptions merging;
   AuditOptions audit;
   ReportOptions report;
 };

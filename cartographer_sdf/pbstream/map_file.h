@@ -16,6 +16,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -43,6 +44,8 @@ struct MapState {
   PoseGraph pose_graph;
   std::map<SubmapId, SubmapSummary> submaps;
   int num_trajectories = 0;
+  // Their ids, in the order of the file.
+  std::vector<int> trajectories;
   // Number of records of each kind, by the name of the field of
   // SerializedData ("submap", "node", "imu_data", ..., "unknown").
   std::map<std::string, int> num_records;

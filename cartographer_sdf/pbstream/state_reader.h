@@ -28,6 +28,8 @@ class StateReader {
 
   // Of the current record.
   [[nodiscard]] const proto::SerializedData& data() const { return data_; }
+  // Its bytes.
+  [[nodiscard]] const std::string& record() const { return record_; }
   // The field of SerializedData that it has, "unknown" for any other.
   [[nodiscard]] std::string kind() const;
   [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const {

@@ -77,6 +77,9 @@ class MapReader {
     status = CheckPoseGraph(stored);
     if (!status.ok()) return reader_.Corrupted(status.message());
     map_.state.num_trajectories = stored.trajectory_size();
+    for (const proto::Trajectory& trajectory : stored.trajectory()) {
+      map_.state.trajectories.push_back(trajectory.trajectory_id());
+    }
     // Poses are preliminary: the attitudes of the nodes are not known yet.
     map_.state.pose_graph = ToPoseGraph(stored, {});
     return absl::OkStatus();

@@ -18,11 +18,6 @@
 
 namespace cartographer_sdf {
 
-struct OdometryWeights {
-  double translation = 0.;
-  double rotation = 0.;
-};
-
 // The odometry weights that fit the map's poses, given the local SLAM weights
 // of the options. Zero where odometry had no part, as in a map that was never
 // optimised. None where there is too little odometry, or it agrees with local

@@ -67,11 +67,20 @@ struct Constraint {
   Tag tag = Tag::kIntraSubmap;
 };
 
+// What odometry between consecutive nodes weighs in an optimisation.
+struct OdometryWeights {
+  double translation = 0.;
+  double rotation = 0.;
+};
+
 struct PoseGraph {
   std::map<SubmapId, Rigid2> submap_poses;  // T_map_submap
   std::map<NodeId, Node> nodes;
   std::vector<Constraint> constraints;
   std::map<std::string, Rigid3> landmark_poses;  // (map <- landmark)
+  // Of trajectories for which not those of the optimisation's options hold, as
+  // where maps of different makers were joined. Not in the file.
+  std::map<int, OdometryWeights> odometry_weights;
 };
 
 }  // namespace cartographer_sdf

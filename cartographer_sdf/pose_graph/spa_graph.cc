@@ -36,6 +36,14 @@ void AddConstraints(const PoseGraph& pose_graph,
   }
 }
 
+OdometryWeights WeightsOf(const OptimizationOptions& options,
+                          const PoseGraph& pose_graph, const int trajectory) {
+  const auto own = pose_graph.odometry_weights.find(trajectory);
+  if (own != pose_graph.odometry_weights.end()) return own->second;
+  return {options.odometry_translation_weight,
+          options.odometry_rotation_weight};
+}
+
 // Between nodes that follow each other with no trimmed one between; of frozen
 // trajectories, as in the host, none.
 void AddConsecutiveNodes(const OptimizationOptions& options,
@@ -50,10 +58,11 @@ void AddConsecutiveNodes(const OptimizationOptions& options,
         !graph->constant[index]) {
       const Node& node = current.second;
       if (node.T_previous_node_by_odometry.has_value()) {
+        const OdometryWeights weights =
+            WeightsOf(options, pose_graph, current.first.trajectory);
         graph->edges.push_back(SpaEdge{index - 1, index,
                                        *node.T_previous_node_by_odometry,
-                                       options.odometry_translation_weight,
-                                       options.odometry_rotation_weight});
+                                       weights.translation, weights.rotation});
       }
       if (previous->second.T_local_node.has_value() &&
           node.T_local_node.has_value()) {

@@ -27,6 +27,10 @@ constexpr double kContrast = 3.;
 // Where a pixel is much larger than a cell, a wall is but a fraction of it.
 constexpr double kMaxWallGain = 4.;
 constexpr double kMarginMeters = 0.5;
+constexpr Color kFree{1., 1., 1.};
+constexpr Color kConflict{0.9, 0.1, 0.1};
+// Beyond it, a pixel is a wall, or free, for sure.
+constexpr double kSureExcess = 0.15;
 
 // More than a quarter of the way around the earth is no map.
 constexpr double kMaxCoordinate = 1e7;
@@ -132,18 +136,58 @@ void MapPainter::AddSubmap(const OccupancyGrid& grid,
   }
 }
 
-Picture MapPainter::Paint() const {
-  Picture picture(width_, height_, kUnknown);
+std::optional<double> MapPainter::ExcessAt(const int x, const int y) const {
+  const double num_samples = num_samples_(x, y);
+  if (num_samples == 0.) return std::nullopt;
   const double pixels_per_cell = frame_.pixels_per_meter * finest_resolution_;
   const double wall_gain = std::clamp(1. / pixels_per_cell, 1., kMaxWallGain);
+  return (wall_gain * occupied_(x, y) - free_(x, y)) / num_samples;
+}
+
+Picture MapPainter::Paint() const {
+  Picture picture(width_, height_, kUnknown);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
-      const double num_samples = num_samples_(x, y);
-      if (num_samples == 0.) continue;
-      const double excess =
-          (wall_gain * occupied_(x, y) - free_(x, y)) / num_samples;
-      const double grey = std::clamp(0.5 - kContrast * excess, 0., 1.);
+      const std::optional<double> excess = ExcessAt(x, y);
+      if (!excess) continue;
+      const double grey = std::clamp(0.5 - kContrast * *excess, 0., 1.);
       picture.BlendPixel(x, y, Color{grey, grey, grey});
+    }
+  }
+  return picture;
+}
+
+Picture PaintOverlaid(const std::vector<const MapPainter*>& maps) {
+  CHECK(!maps.empty());
+  const int width = maps.front()->width();
+  const int height = maps.front()->height();
+  for (const MapPainter* const map : maps) {
+    CHECK(map->width() == width && map->height() == height);
+  }
+  Picture picture(width, height, kUnknown);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      bool is_known = false, is_free = false, is_wall = false;
+      for (const MapPainter* const map : maps) {
+        const std::optional<double> excess = map->ExcessAt(x, y);
+        if (!excess) continue;
+        is_known = true;
+        is_free |= *excess < -kSureExcess;
+        is_wall |= *excess > kSureExcess;
+      }
+      if (!is_known) continue;
+      picture.BlendPixel(x, y, kFree);
+      if (is_free && is_wall) {
+        picture.BlendPixel(x, y, kConflict);
+        continue;
+      }
+      for (size_t k = 0; k < maps.size(); ++k) {
+        const std::optional<double> excess = maps[k]->ExcessAt(x, y);
+        if (!excess || *excess <= 0.) continue;
+        Color color = CategoryColor(static_cast<int>(k));
+        color.alpha = std::min(1., kContrast * *excess);
+        picture.BlendPixel(x, y, color);
+      }
     }
   }
   return picture;

@@ -9,6 +9,7 @@
 #define CARTOGRAPHER_SDF_REPORT_MAP_PAINTER_H_
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,11 @@ class MapPainter {
   [[nodiscard]] const PixelFrame& frame() const { return frame_; }
   // Of what was added so far.
   [[nodiscard]] Picture Paint() const;
+  // How far the mean probability of a pixel is above (a wall) or below (free)
+  // 1/2; none where nothing is known.
+  [[nodiscard]] std::optional<double> ExcessAt(int x, int y) const;
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
 
  private:
   PixelFrame frame_;
@@ -49,6 +55,12 @@ class MapPainter {
   Eigen::ArrayXXf free_;
   double finest_resolution_ = 0.;
 };
+
+// Several maps in one picture, painted by painters of the same grids, each with
+// submaps of its own: the walls of each in the colour of its place in the list
+// (CategoryColor), what is free in any of them white, and red where a wall of
+// one stands in the free space of another.
+[[nodiscard]] Picture PaintOverlaid(const std::vector<const MapPainter*>& maps);
 
 // To be drawn upon a map's picture. Positions are in the frame of `frame` [m];
 // those off this world are left out.

@@ -13,10 +13,21 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
+DEFINE_string(
+    map, "",
+    "relocalize: the map in which to look, a .pbstream. simulate: the "
+    "floor plan to drive through, a PGM with dark walls; an office is "
+    "invented if empty.");
 DEFINE_string(query, "",
-              "Another map, whose submaps are searched in those of --input. "
-              "None if empty: the submaps of --input in each other.");
+              "Another map, whose submaps are searched in those of --input or "
+              "--map. In match, none if empty: the submaps of --input in each "
+              "other.");
 DEFINE_string(output, "", "The file to write.");
+DEFINE_string(places, "",
+              "A file beside the map (--input of match, --map) that holds what "
+              "its submaps look like: read instead of describing them again, "
+              "made where there is none or where it is of another map or other "
+              "options.");
 DEFINE_string(
     truth, "",
     "True poses, lines of kind,trajectory,index,x,y,yaw: read by evaluate, "

@@ -15,8 +15,10 @@
 #include "gflags/gflags.h"
 
 DECLARE_string(input);
+DECLARE_string(map);
 DECLARE_string(query);
 DECLARE_string(output);
+DECLARE_string(places);
 DECLARE_string(truth);
 DECLARE_string(report);
 DECLARE_string(configuration_directory);

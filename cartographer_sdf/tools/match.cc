@@ -31,11 +31,6 @@ DEFINE_bool(retrieval, false,
             "Match only those pairs of submaps that an index of all features "
             "proposes: much faster on large maps, at the price of some pairs.");
 
-DEFINE_string(places, "",
-              "A file beside --input that holds what its submaps look like: "
-              "read instead of describing them again, made where there is none "
-              "or where it is of another map or other options.");
-
 namespace cartographer_sdf {
 namespace {
 
@@ -81,26 +76,6 @@ void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
   }
 }
 
-// A file of places is bound to all options: more than they depend on, but never
-// too few.
-absl::StatusOr<DescribedMap> DescribeInput(
-    const Options& options, const Executor& executor,
-    const ProgressCallback& on_progress) {
-  const LoopClosingOptions& stages = options.loop_closing;
-  if (FLAGS_places.empty()) {
-    return DescribeMap(stages.place, stages.match, FLAGS_input, executor,
-                       on_progress);
-  }
-  absl::StatusOr<RememberedMap> remembered =
-      RememberMap(stages.place, stages.match, FormatOptions(options),
-                  FLAGS_input, FLAGS_places, executor, on_progress);
-  if (!remembered.ok()) return remembered.status();
-  if (!remembered->complaint.empty()) {
-    std::cerr << "--places: " << remembered->complaint << "\n";
-  }
-  return std::move(remembered->map);
-}
-
 absl::Status RunMatch() {
   const absl::StatusOr<Options> options = LoadOptionsOfMethod();
   if (!options.ok()) return options.status();
@@ -115,8 +90,8 @@ absl::Status RunMatch() {
   const std::optional<RetrievalOptions> retrieval =
       FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
-  const absl::StatusOr<DescribedMap> map =
-      DescribeInput(*options, executor, progress.Begin("read and describe"));
+  const absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
+      *options, FLAGS_input, executor, progress.Begin("read and describe"));
   if (!map.ok()) return map.status();
   std::vector<Match> matches;
   std::optional<MapState> query_state;

@@ -9,10 +9,6 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(
-    map, "",
-    "Floor plan to drive through, a PGM with dark walls. If empty, an "
-    "office is invented.");
 DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
 DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
 DEFINE_double(plan_width, 40., "Of the office that is invented [m].");

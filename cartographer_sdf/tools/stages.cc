@@ -3,6 +3,10 @@
 
 #include "cartographer_sdf/tools/stages.h"
 
+#include <iostream>
+#include <utility>
+
+#include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/parallel_for.h"
 
 namespace cartographer_sdf {
@@ -24,6 +28,23 @@ ProgressCallback StageProgress::Begin(const std::string& stage) {
   progress_.reset();
   progress_ = std::make_unique<Progress>(stage);
   return progress_->Callback();
+}
+
+absl::StatusOr<DescribedMap> DescribeMapOfFlags(
+    const Options& options, const std::string& path, const Executor& executor,
+    const ProgressCallback& on_progress) {
+  const LoopClosingOptions& stages = options.loop_closing;
+  if (FLAGS_places.empty()) {
+    return DescribeMap(stages.place, stages.match, path, executor, on_progress);
+  }
+  absl::StatusOr<RememberedMap> remembered =
+      RememberMap(stages.place, stages.match, FormatOptions(options), path,
+                  FLAGS_places, executor, on_progress);
+  if (!remembered.ok()) return remembered.status();
+  if (!remembered->complaint.empty()) {
+    std::cerr << "--places: " << remembered->complaint << "\n";
+  }
+  return std::move(remembered->map);
 }
 
 MatchRow ToRow(const Match& match, const bool accepted,

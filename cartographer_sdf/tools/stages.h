@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/tools/progress.h"
@@ -28,6 +30,13 @@ class StageProgress {
  private:
   std::unique_ptr<Progress> progress_;
 };
+
+// The places of a map: from the file of --places, if it is given, or described,
+// and then left there. A file of places is bound to all options: more than they
+// depend on, but never too few.
+[[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapOfFlags(
+    const Options& options, const std::string& path, const Executor& executor,
+    const ProgressCallback& on_progress);
 
 [[nodiscard]] MatchRow ToRow(const Match& match, bool accepted,
                              const std::string& verdict);

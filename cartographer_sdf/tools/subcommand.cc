@@ -18,11 +18,15 @@ Subcommand Evaluate();
 Subcommand FalsifySubcommand();
 Subcommand Info();
 Subcommand MatchSubcommand();
+Subcommand MergeSubcommand();
+Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
   return {CloseLoopsSubcommand(),
           MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
           AuditSubcommand(),
           Evaluate(),
           SimulateSubcommand(),

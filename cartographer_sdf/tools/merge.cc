@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <iostream>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/pbstream/joined_map_file.h"
+#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/session_json.h"
+#include "cartographer_sdf/tools/session_report.h"
+#include "cartographer_sdf/tools/stages.h"
+#include "cartographer_sdf/tools/subcommand.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(inputs, "", "The maps to merge, separated by commas.");
+DECLARE_string(result);
+
+namespace cartographer_sdf {
+namespace {
+
+void PrintSummary(const MergingResult& result) {
+  for (size_t k = 0; k < result.sessions.size(); ++k) {
+    const MergedSession& session = result.sessions[k];
+    std::cout << absl::StrFormat("%3d  %s: ", k + 1, session.path);
+    if (session.T_merged_session) {
+      const Rigid2& pose = *session.T_merged_session;
+      std::cout << absl::StrFormat(
+          "at x %.3f m, y %.3f m, yaw %.2f deg\n", pose.translation().x(),
+          pose.translation().y(), pose.rotation() * 180. / M_PI);
+    } else {
+      std::cout << "NOT CONNECTED, not in the merged map\n";
+    }
+  }
+  for (const SessionLink& link : result.links) {
+    const Relocalization& found = link.relocalization;
+    std::cout << absl::StrFormat(
+        "  %d and %d: %s, %s\n", link.first + 1, link.second + 1,
+        RelocalizationVerdictName(found.verdict), found.reason);
+  }
+  std::map<Fate, int> fates;
+  for (const ClosureOutcome& outcome : result.closures) ++fates[outcome.fate];
+  for (const auto& [fate, count] : fates) {
+    std::cout << absl::StrFormat("  %5d closures %s\n", count, FateName(fate));
+  }
+  std::cout << absl::StrFormat(
+      "  %d pairs of submaps overlap, %d of them contradict each other\n",
+      result.num_overlapping, result.contradictions.size());
+  for (const auto& [stage, seconds] : result.stage_seconds) {
+    std::cout << absl::StrFormat("  %7.2f s %s\n", seconds, stage);
+  }
+}
+
+absl::Status RunMerge() {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  if (options->loop_closing.match.method != Method::kSdf) {
+    return absl::InvalidArgumentError(
+        "merge needs match.method = \"sdf\": the number of inliers is no "
+        "verification");
+  }
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
+  if (!frozen.ok()) return frozen.status();
+  const std::vector<std::string> inputs =
+      absl::StrSplit(FLAGS_inputs, ',', absl::SkipEmpty());
+  if (inputs.size() < 2) {
+    return UsageError("--inputs needs two maps at least, separated by commas");
+  }
+  StageProgress progress;
+  const absl::StatusOr<MergingResult> result = MergeSessions(
+      options->merging, options->relocalization, options->loop_closing, inputs,
+      *frozen, MakeExecutor(*num_threads), progress.Callback());
+  if (!result.ok()) return result.status();
+  absl::Status status;
+  if (!FLAGS_result.empty()) {
+    status = WriteWholeFile(FLAGS_result, FormatMerging(*result));
+  }
+  if (status.ok() && !FLAGS_report.empty()) {
+    status = WriteMergingReport(FLAGS_report, *options, *result,
+                                progress.Begin("report"));
+  }
+  if (status.ok() && !result->refusal.empty()) {
+    PrintSummary(*result);
+    status = absl::FailedPreconditionError(absl::StrCat(
+        "nothing is written to ", FLAGS_output, ": ", result->refusal));
+  }
+  if (status.ok()) {
+    status = WriteJoinedMap(result->parts, result->pose_graph, FLAGS_output,
+                            progress.Begin("write"));
+  }
+  if (!status.ok()) return status;
+  PrintSummary(*result);
+  std::cout << FLAGS_output << "\n";
+  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Subcommand MergeSubcommand() {
+  return Subcommand{
+      "merge",
+      "one map from several of the same building",
+      "--inputs A.pbstream,B.pbstream,... --output M.pbstream "
+      "[--result R.json] [--report DIR]",
+      "Finds where the maps lie in each other, in any order and without a pose "
+      "prior; adds the closures between them and within each; optimises, with "
+      "the odometry weights that each map shows; and writes one map that "
+      "Cartographer's own tools load. Trajectories are numbered in the order "
+      "of "
+      "the inputs; assets_writer takes one bag for each, in that order. All "
+      "nodes, times and sensor data are kept.\n\n"
+      "The largest group of maps that are connected is merged, in the frame of "
+      "its first; others are reported. Where nothing is connected, or the "
+      "merged map would be folded, nothing is written.\n\n"
+      "--frozen_trajectories, of the first map, stay where they are.",
+      {"inputs", "output"},
+      {"result", "report", "frozen_trajectories", "configuration_directory",
+       "configuration_basename", "threads"},
+      &RunMerge};
+}
+
+}  // namespace cartographer_sdf

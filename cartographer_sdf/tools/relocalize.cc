@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iostream>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/pbstream/joined_map_file.h"
+#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/sessions/relocalization.h"
+#include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/session_json.h"
+#include "cartographer_sdf/tools/session_report.h"
+#include "cartographer_sdf/tools/stages.h"
+#include "cartographer_sdf/tools/subcommand.h"
+#include "gflags/gflags.h"
+
+DEFINE_string(result, "", "The JSON file for the result. None if empty.");
+DEFINE_double(first_seconds, 0.,
+              "Only this much of each trajectory of the query, as if it had "
+              "just been driven: places are made of its scans. [s]");
+DEFINE_double(start_seconds, 0.,
+              "Where --first_seconds begin, from the beginning of each "
+              "trajectory on. [s]");
+
+DEFINE_int32(num_starts, 1,
+             "So many windows of --first_seconds, evenly spaced along the "
+             "query: from where on could it be localized? --result is then a "
+             "list.");
+
+namespace cartographer_sdf {
+namespace {
+
+bool IsGiven(const char* const flag) {
+  return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default;
+}
+
+absl::StatusOr<std::optional<TimeWindow>> WindowOfFlags() {
+  if (!IsGiven("first_seconds")) {
+    if (IsGiven("start_seconds")) {
+      return UsageError("--start_seconds needs --first_seconds");
+    }
+    return std::nullopt;
+  }
+  if (!(FLAGS_first_seconds > 0. && std::isfinite(FLAGS_first_seconds))) {
+    return UsageError("--first_seconds must be positive");
+  }
+  if (!(FLAGS_start_seconds >= 0. && std::isfinite(FLAGS_start_seconds))) {
+    return UsageError("--start_seconds must not be negative");
+  }
+  if (!FLAGS_output.empty()) {
+    return UsageError(
+        "--output takes the whole query: not together with --first_seconds");
+  }
+  return TimeWindow{FLAGS_start_seconds, FLAGS_first_seconds};
+}
+
+absl::Status CheckNumStarts() {
+  if (!IsGiven("num_starts")) return absl::OkStatus();
+  if (FLAGS_num_starts < 1 || FLAGS_num_starts > 10000) {
+    return UsageError("--num_starts must lie between 1 and 10000");
+  }
+  if (!IsGiven("first_seconds") || IsGiven("start_seconds") ||
+      !FLAGS_report.empty()) {
+    return UsageError(
+        "--num_starts needs --first_seconds, and goes neither with "
+        "--start_seconds nor with --report");
+  }
+  return absl::OkStatus();
+}
+
+// Of the longest trajectory [s].
+double Duration(const std::map<NodeId, Node>& nodes) {
+  std::map<int, std::pair<int64_t, int64_t>> ranges;
+  for (const auto& [id, node] : nodes) {
+    auto& [begin, end] =
+        ranges.emplace(id.trajectory, std::pair(node.time, node.time))
+            .first->second;
+    begin = std::min(begin, node.time);
+    end = std::max(end, node.time);
+  }
+  double longest = 0.;
+  for (const auto& [trajectory, range] : ranges) {
+    longest = std::max(longest, static_cast<double>(range.second) * 1e-7 -
+                                    static_cast<double>(range.first) * 1e-7);
+  }
+  return longest;
+}
+
+// One line and one entry of the result for each window.
+absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
+                           const Executor& executor,
+                           StageProgress* const progress) {
+  const absl::StatusOr<MapState> query = ReadMap(FLAGS_query);
+  if (!query.ok()) return query.status();
+  const double latest_start =
+      std::max(0., Duration(query->pose_graph.nodes) - FLAGS_first_seconds);
+  const ProgressCallback on_progress = progress->Begin("windows");
+  std::vector<std::string> results;
+  int num_localized = 0;
+  for (int k = 0; k < FLAGS_num_starts; ++k) {
+    const double start =
+        FLAGS_num_starts == 1 ? 0. : latest_start * k / (FLAGS_num_starts - 1);
+    const absl::StatusOr<ScanMap> window = DescribeScans(
+        options.relocalization.scan_places, options.loop_closing.place,
+        options.loop_closing.match, FLAGS_query, *query,
+        TimeWindow{start, FLAGS_first_seconds}, executor);
+    if (!window.ok()) return window.status();
+    const Relocalization result =
+        Relocalize(options.relocalization, options.loop_closing, map,
+                   window->map, executor);
+    num_localized += result.T_map_query.has_value();
+    std::cout << absl::StrFormat("%7.1f s: %s, %s\n", start,
+                                 RelocalizationVerdictName(result.verdict),
+                                 result.reason);
+    results.push_back(
+        absl::StrFormat("{\"start_seconds\": %.9g, \"result\": %s}", start,
+                        FormatRelocalization(result)));
+    on_progress((k + 1.) / FLAGS_num_starts);
+  }
+  std::cout << num_localized << " of " << FLAGS_num_starts
+            << " windows were localized\n";
+  if (FLAGS_result.empty()) return absl::OkStatus();
+  return WriteWholeFile(
+      FLAGS_result, absl::StrCat("[", absl::StrJoin(results, ",\n"), "]\n"));
+}
+
+absl::Status WriteCombinedMap(const Options& options, const Session& map,
+                              const Session& query,
+                              const Relocalization& result,
+                              const Executor& executor,
+                              StageProgress* const progress) {
+  if (!result.T_map_query) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("nothing is written to ", FLAGS_output, ": ", query.path,
+                     " was not localized in ", map.path, ": ", result.reason));
+  }
+  const absl::StatusOr<MergingResult> merged =
+      AttachQuery(options.merging, options.loop_closing, map, query, result,
+                  executor, progress->Callback());
+  if (!merged.ok()) return merged.status();
+  if (!merged->refusal.empty()) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "nothing is written to ", FLAGS_output, ": ", merged->refusal));
+  }
+  return WriteJoinedMap(merged->parts, merged->pose_graph, FLAGS_output,
+                        progress->Begin("write"));
+}
+
+void PrintSummary(const Relocalization& result) {
+  if (result.T_map_query) {
+    const Rigid2& pose = *result.T_map_query;
+    std::cout << absl::StrFormat(
+        "localized: x %.3f m, y %.3f m, yaw %.2f deg\n", pose.translation().x(),
+        pose.translation().y(), pose.rotation() * 180. / M_PI);
+  } else {
+    std::cout << "not localized: " << RelocalizationVerdictName(result.verdict)
+              << "\n";
+  }
+  std::cout << "  " << result.reason << "\n";
+  if (result.score) {
+    std::cout << absl::StrFormat("  score %.1f (log-odds)", *result.score);
+    if (result.runner_up_score) {
+      std::cout << absl::StrFormat(", runner-up %.1f", *result.runner_up_score);
+    }
+    std::cout << absl::StrFormat("; %d matches agree, %d contradict\n",
+                                 result.num_agreeing, result.num_contradicting);
+  }
+  for (const auto& [stage, seconds] : result.stage_seconds) {
+    std::cout << absl::StrFormat("  %7.3f s %s\n", seconds, stage);
+  }
+}
+
+absl::Status RunRelocalize() {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  if (options->loop_closing.match.method != Method::kSdf) {
+    return absl::InvalidArgumentError(
+        "relocalize needs match.method = \"sdf\": the number of inliers is no "
+        "verification");
+  }
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
+  if (!window.ok()) return window.status();
+  if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
+  const Executor executor = MakeExecutor(*num_threads);
+  StageProgress progress;
+  absl::StatusOr<DescribedMap> map =
+      DescribeMapOfFlags(*options, FLAGS_map, executor,
+                         progress.Begin("read and describe the map"));
+  if (!map.ok()) return map.status();
+  if (IsGiven("num_starts")) {
+    return RunManyStarts(*options, *map, executor, &progress);
+  }
+  const absl::StatusOr<Session> query = DescribeSession(
+      options->relocalization, options->loop_closing, FLAGS_query, *window,
+      executor, progress.Begin("read and describe the query"));
+  if (!query.ok()) return query.status();
+  RelocalizationOptions relocalization = options->relocalization;
+  if (!FLAGS_output.empty()) {
+    // Every match is of use.
+    relocalization.num_first_places = std::numeric_limits<int>::max();
+    relocalization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
+  }
+  const Relocalization result =
+      Relocalize(relocalization, options->loop_closing, *map, query->map,
+                 executor, progress.Callback());
+  const Session map_session{FLAGS_map, *std::move(map), {}};
+  absl::Status status;
+  if (!FLAGS_result.empty()) {
+    status = WriteWholeFile(FLAGS_result, FormatRelocalization(result));
+  }
+  if (status.ok() && !FLAGS_report.empty()) {
+    status =
+        WriteRelocalizationReport(FLAGS_report, *options, map_session, *query,
+                                  result, progress.Begin("report"));
+  }
+  if (status.ok() && !FLAGS_output.empty()) {
+    status = WriteCombinedMap(*options, map_session, *query, result, executor,
+                              &progress);
+  }
+  if (!status.ok()) return status;
+  PrintSummary(result);
+  for (const std::string& path : {FLAGS_result, FLAGS_output}) {
+    if (!path.empty()) std::cout << path << "\n";
+  }
+  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+Subcommand RelocalizeSubcommand() {
+  return Subcommand{
+      "relocalize",
+      "where a map, or a drive's start, lies in a map",
+      "--map A.pbstream --query B.pbstream [--first_seconds N] "
+      "[--result R.json] [--output M.pbstream] [--report DIR]",
+      "Searches every submap of the query in the map, without a pose prior. "
+      "The "
+      "matches vote, and a pose is reported only where it is certain; else "
+      "the result is \"localized\": false with the reason, and the exit code "
+      "still 0. T_map_query is the pose of the query's map frame in the map "
+      "frame [m, rad].\n\n"
+      "With --output, both maps as one: that of --map stays where it is, the "
+      "query is attached and optimised. That it is not localized is an error "
+      "then.",
+      {"map", "query"},
+      {"first_seconds", "start_seconds", "num_starts", "result", "output",
+       "report", "places", "configuration_directory", "configuration_basename",
+       "threads"},
+      &RunRelocalize};
+}
+
+}  // namespace cartographer_sdf
