@@ -23,15 +23,9 @@ Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(),
-          MatchSubcommand(),
-          RelocalizeSubcommand(),
-          MergeSubcommand(),
-          AuditSubcommand(),
-          Evaluate(),
-          SimulateSubcommand(),
-          FalsifySubcommand(),
-          Info()};
+  return {CloseLoopsSubcommand(), MatchSubcommand(),   RelocalizeSubcommand(),
+          MergeSubcommand(),      AuditSubcommand(),   Evaluate(),
+          SimulateSubcommand(),   FalsifySubcommand(), Info()};
 }
 
 absl::Status UsageError(const std::string& message) {
