@@ -198,6 +198,40 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- Poses that come with each.
       max_num_hypotheses = 3,
     },
+    -- Whether matches are judged again by the neighbours of both submaps, where
+    -- local SLAM places them: tells twins apart, and finds what a pair's own
+    -- features do not. false: each pair alone, faster. `match` has the flag
+    -- --alone.
+    ask_neighbours = true,
+    neighbourhood = {
+      -- Neighbours on each side, and how far apart their indices are. Every
+      -- other submap shares no scans. Larger: more evidence, slower.
+      num_steps = 2,
+      index_step = 2,
+      -- [m^2] Two neighbours that see less in common are not asked.
+      min_overlap_area = 15.,
+      -- Wall points of each neighbour. Larger: more precise, slower.
+      num_points = 600,
+      -- [m] A match is judged as if its neighbours had seen this much wall more
+      -- in common ...
+      prior_wall_length_meters = 50.,
+      -- ... of which this part contradicts. Larger: agreement counts for more.
+      prior_contradiction_ratio = 0.05,
+      -- Matches of a lower score of their own are not looked at.
+      min_pair_score = -5.,
+      -- From this score on a match proposes poses to neighbouring pairs. Larger:
+      -- faster, less recall.
+      min_proposing_score = 0.,
+      -- Score = log-odds of being right. Learned by scripts/learn_score.py
+      -- --neighbours on the same maps as score_weights.
+      weights = {
+        -- Of the pair's own score.
+        pair_score = 0.52,
+        -- Of the logarithm of the neighbours' contradicting part of wall.
+        log_contradiction = -5.62,
+        bias = -0.64,
+      },
+    },
     -- Whether closures of submaps that local SLAM tore, so that walls stand in
     -- them twice, say nothing of others and need the support of others. Reads
     -- all scans of the map.
@@ -276,6 +310,39 @@ SDF_GLOBAL_CONSTRAINTS = {
       max_translation_error_meters = 0.5,
       max_rotation_error = 0.1,
       max_num_rounds = 10,
+    },
+  },
+  -- The comparison method: curvature clusters of point clouds (Bosse and Zlot
+  -- 2009), described by shape contexts (Belongie et al. 2002). Only for
+  -- `--method shape_context`, whose matching shape_context.lua sets.
+  shape_context = {
+    cloud = {
+      -- Scans taken of each submap. Larger: denser clouds, more time.
+      max_num_scans = 30,
+      -- [m] Points in one square of this side become one.
+      voxel_size_meters = 0.05,
+    },
+    keypoint = {
+      -- [m] Points within it say how a surface bends. Larger: small corners
+      -- blur.
+      scatter_radius_meters = 0.4,
+      -- Points with fewer neighbours are no part of a surface.
+      min_num_neighbours = 5,
+      -- Least curvature, 0 to 0.5. Larger: fewer, sharper keypoints.
+      detection_threshold = 0.05,
+      -- [m] Points of high curvature this near to each other are one keypoint.
+      cluster_radius_meters = 0.4,
+      -- Clusters of fewer points are noise.
+      min_num_points = 3,
+    },
+    descriptor = {
+      -- [m] How much of the surroundings is described.
+      radius_meters = 2.,
+      -- Each reaches twice as far as the one inside it.
+      num_radial_bins = 3,
+      num_angular_bins = 6,
+      -- [m] Points within it fix the direction that the others are seen from.
+      orientation_radius_meters = 1.,
     },
   },
   -- Where a map, or the beginning of a drive, lies in another map (relocalize,

@@ -40,10 +40,11 @@ OFFLINE = {
     "sessions": [*CORE, "pose_graph", "pbstream", "loop_closing",
                  "simulation/lidar.h", "simulation/submap_grid.h"],
     "config": [*CORE, "pose_graph", "loop_closing", "sessions", "audit",
+               "evaluation",
                "report/report_options.h"],
     "simulation": ["geometry", "grid", "pose_graph/pose_graph.h", "pbstream",
                    "proto"],
-    "evaluation": [*CORE, "file", "pose_graph", "pbstream"],
+    "evaluation": [*CORE, "file", "pose_graph", "pbstream", "loop_closing"],
     "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {

@@ -20,8 +20,12 @@ Maps come from --data (those of the table below that are there), from --sets
 query_truth, the last three empty where a map is matched with itself; paths are
 relative to the file), and from simulated buildings.
 
-Matches are made with all thresholds of the score off, so that the terms do not
-depend on the weights in force.
+Matches are made of each pair alone and with all thresholds of the score off, so
+that the terms do not depend on the weights in force.
+
+With --neighbours it learns the weights of the score in the neighbourhood
+(neighbourhood.weights) instead, whose terms build on the pair's own score:
+matches are made as shipped, and so with the weights in force.
 """
 
 import argparse
@@ -263,7 +267,8 @@ def report(sets, penalty):
                    else [f"{at_1:.3f}", f"{at_99:.3f}"])
         lines.append(f"| {answers.name} | {recalls[0]} | {recalls[1]} | "
                      f"{num_wrong} |")
-    lines += ["", "```lua", "score_weights = {"]
+    lines += ["", "```lua",
+              f"{'weights' if 'pair_score' in names else 'score_weights'} = {{"]
     lines += [f"  {name} = {format_lua(weight)},"
               for name, weight in zip([*names, "bias"], [*weights, bias])]
     lines += ["},", "```"]
@@ -337,28 +342,41 @@ return SDF_GLOBAL_CONSTRAINTS
 """
 
 
+# With neighbours, nothing is switched off.
+NEIGHBOURS_CONFIGURATION = """include "sdf_global_constraints.lua"
+return SDF_GLOBAL_CONSTRAINTS
+"""
+# Few wrong answers lie near right ones: a weaker penalty follows single ones.
+NEIGHBOURS_PENALTY = 1e-3
+PENALTY = 1e-4
+
+
 class Workshop:
     """Runs the program and keeps what it made in a folder, by the content of
     the program and its options. Both are copied there first: a long run does
     not mind that they are worked on."""
 
-    def __init__(self, program, work, threads):
+    def __init__(self, program, work, threads, neighbours=False):
         self.work = work
         self.threads = threads
+        self.neighbours = neighbours
+        configuration = (NEIGHBOURS_CONFIGURATION if neighbours
+                         else CONFIGURATION)
         if not os.access(program, os.X_OK):
             raise Failure(f"build first: {program} is missing")
         options = (SOURCE_DIR / "configuration_files" /
                    "sdf_global_constraints.lua").read_bytes()
         digest = hashlib.sha256(program.read_bytes())
         digest.update(options)
-        digest.update(CONFIGURATION.encode())
+        digest.update(configuration.encode())
         self.folder = (work / digest.hexdigest()[:12]).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.program = self.folder / "cartographer_sdf"
         if not self.program.exists():
             shutil.copy2(program, self.program)
         (self.folder / "sdf_global_constraints.lua").write_bytes(options)
-        (self.folder / "learn.lua").write_text(CONFIGURATION, encoding="utf-8")
+        (self.folder / "learn.lua").write_text(configuration,
+                                               encoding="utf-8")
 
     def run(self, *arguments):
         result = subprocess.run([str(self.program), *map(str, arguments)],
@@ -400,7 +418,9 @@ class Workshop:
         if not (terms.exists() and matches.exists()):
             tell(f"match {name}")
             self.run("match", "--input", map_path, *between, "--output",
-                     matches, "--terms", terms, "--threads", self.threads,
+                     matches, *(["--neighbour_terms"] if self.neighbours
+                                else ["--alone", "--terms"]), terms,
+                     "--threads", self.threads,
                      "--configuration_directory", self.folder,
                      "--configuration_basename", "learn.lua")
         num_positives = 0
@@ -476,9 +496,16 @@ def main():
                         default=SOURCE_DIR / "build" / "cartographer_sdf")
     parser.add_argument("--threads", type=int, default=0,
                         help="0: as many as there are cores")
-    parser.add_argument("--penalty", type=float, default=1e-4,
-                        help="of the L2 regularisation")
+    parser.add_argument("--neighbours", action="store_true",
+                        help="learn the score in the neighbourhood")
+    parser.add_argument("--penalty", type=float,
+                        help="of the L2 regularisation; by default "
+                             f"{PENALTY:g}, with --neighbours "
+                             f"{NEIGHBOURS_PENALTY:g}")
     arguments = parser.parse_args()
+    if arguments.penalty is None:
+        arguments.penalty = (NEIGHBOURS_PENALTY if arguments.neighbours
+                             else PENALTY)
     if not arguments.penalty > 0.:
         parser.error("--penalty must be positive")
     if not 0 <= arguments.simulated <= len(SIMULATED):
@@ -487,7 +514,7 @@ def main():
         work = arguments.work or pathlib.Path(temporary)
         try:
             workshop = Workshop(arguments.program.resolve(), work,
-                                arguments.threads)
+                                arguments.threads, arguments.neighbours)
             sets = list(make_answers(workshop, REAL_SETS, arguments.data))
             if arguments.sets:
                 sets += make_answers(workshop, read_set_list(arguments.sets),

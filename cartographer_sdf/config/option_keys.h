@@ -223,12 +223,34 @@ void VisitOptions(Visitor& visit, WithdrawalOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, NeighbourhoodWeights& weights) {
+  visit("pair_score", weights.pair_score);
+  visit("log_contradiction", weights.log_contradiction);
+  visit("bias", weights.bias);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
+  visit("num_steps", options.num_steps);
+  visit("index_step", options.index_step);
+  visit("min_overlap_area", options.min_overlap_area);
+  visit("num_points", options.num_points);
+  visit("prior_wall_length_meters", options.prior_wall_length_meters);
+  visit("prior_contradiction_ratio", options.prior_contradiction_ratio);
+  visit("min_pair_score", options.min_pair_score);
+  visit("min_proposing_score", options.min_proposing_score);
+  visit("weights", options.weights);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
   visit("place", options.place);
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
   visit("use_retrieval", options.use_retrieval);
   visit("retrieval", options.retrieval);
+  visit("ask_neighbours", options.ask_neighbours);
+  visit("neighbourhood", options.neighbourhood);
   visit("silence_torn_submaps", options.silence_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);
@@ -253,6 +275,36 @@ void VisitOptions(Visitor& visit, AuditOptions& options) {
   visit("max_agreeing_translation_meters",
         options.max_agreeing_translation_meters);
   visit("max_agreeing_rotation", options.max_agreeing_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, SubmapCloudOptions& options) {
+  visit("max_num_scans", options.max_num_scans);
+  visit("voxel_size_meters", options.voxel_size_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CurvatureClusterOptions& options) {
+  visit("scatter_radius_meters", options.scatter_radius_meters);
+  visit("min_num_neighbours", options.min_num_neighbours);
+  visit("detection_threshold", options.detection_threshold);
+  visit("cluster_radius_meters", options.cluster_radius_meters);
+  visit("min_num_points", options.min_num_points);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ShapeContextOptions& options) {
+  visit("radius_meters", options.radius_meters);
+  visit("num_radial_bins", options.num_radial_bins);
+  visit("num_angular_bins", options.num_angular_bins);
+  visit("orientation_radius_meters", options.orientation_radius_meters);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, CloudPlaceOptions& options) {
+  visit("cloud", options.cloud);
+  visit("keypoint", options.keypoint);
+  visit("descriptor", options.descriptor);
 }
 
 template <typename Visitor>
@@ -298,6 +350,7 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
+  visit("shape_context", options.shape_context);
   visit("relocalization", options.relocalization);
   visit("merging", options.merging);
   visit("audit", options.audit);

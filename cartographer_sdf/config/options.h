@@ -13,6 +13,7 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/audit/audit.h"
+#include "cartographer_sdf/evaluation/shape_context.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
 #include "cartographer_sdf/sessions/merging.h"
@@ -22,6 +23,8 @@ namespace cartographer_sdf {
 
 struct Options {
   LoopClosingOptions loop_closing;
+  // The comparison method's description of submaps, `--method shape_context`.
+  CloudPlaceOptions shape_context;
   RelocalizationOptions relocalization;
   MergingOptions merging;
   AuditOptions audit;

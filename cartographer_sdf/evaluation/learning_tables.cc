@@ -3,8 +3,11 @@
 
 #include "cartographer_sdf/evaluation/learning_tables.h"
 
+#include <array>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "cartographer_sdf/file/whole_file.h"
 
 namespace cartographer_sdf {
@@ -18,26 +21,49 @@ std::string Ids(const SubmapId& reference, const SubmapId& query) {
                       query.trajectory, ",", query.index);
 }
 
+template <size_t n>
+std::string Header(const std::array<const char*, n>& term_names) {
+  return absl::StrCat(kIdColumns, ",score,", absl::StrJoin(term_names, ","),
+                      "\n");
+}
+
+template <size_t n>
+void AppendRow(const LoopClosure& closure, const double score,
+               const std::array<double, n>& terms, std::string* const content) {
+  absl::StrAppendFormat(content, "%s,%.9g",
+                        Ids(closure.reference, closure.query), score);
+  for (const double term : terms) absl::StrAppendFormat(content, ",%.9g", term);
+  *content += "\n";
+}
+
 }  // namespace
 
 absl::Status WriteScoreTerms(const std::string& path,
                              const std::vector<Match>& matches) {
-  std::string content = absl::StrCat(kIdColumns, ",score");
-  for (const char* const name : ScoreTermNames()) {
-    absl::StrAppend(&content, ",", name);
-  }
-  content += "\n";
+  std::string content = Header(ScoreTermNames());
   for (const Match& match : matches) {
     if (!match.verification) continue;
     const Verification& verification = *match.verification;
-    absl::StrAppendFormat(&content, "%s,%.9g",
-                          Ids(match.closure.reference, match.closure.query),
-                          verification.score);
-    for (const double term :
-         ScoreTerms(verification.agreement, verification.margin)) {
-      absl::StrAppendFormat(&content, ",%.9g", term);
+    AppendRow(match.closure, verification.score,
+              ScoreTerms(verification.agreement, verification.margin),
+              &content);
+  }
+  return WriteWholeFile(path, content);
+}
+
+absl::Status WriteNeighbourhoodTerms(const std::string& path,
+                                     const NeighbourhoodOptions& options,
+                                     const std::vector<Match>& matches) {
+  std::string content = Header(NeighbourhoodTermNames());
+  for (const Match& match : matches) {
+    if (!match.verification || !match.neighbourhood ||
+        match.verification->score < options.min_pair_score) {
+      continue;
     }
-    content += "\n";
+    AppendRow(match.closure, match.closure.score,
+              NeighbourhoodTerms(options, match.verification->score,
+                                 *match.neighbourhood),
+              &content);
   }
   return WriteWholeFile(path, content);
 }

@@ -13,6 +13,7 @@
 #include "absl/status/status.h"
 #include "cartographer_sdf/evaluation/match_score.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
 
 namespace cartographer_sdf {
 
@@ -21,6 +22,12 @@ namespace cartographer_sdf {
 // (ScoreTermNames). Matches without a verification have no row. To nine digits.
 [[nodiscard]] absl::Status WriteScoreTerms(const std::string& path,
                                            const std::vector<Match>& matches);
+
+// The same of the score in the neighbourhood (NeighbourhoodTermNames). Matches
+// whose neighbours nobody asked, or whose own score is hopeless, have no row.
+[[nodiscard]] absl::Status WriteNeighbourhoodTerms(
+    const std::string& path, const NeighbourhoodOptions& options,
+    const std::vector<Match>& matches);
 
 // CSV with the columns reference_trajectory, reference_index, query_trajectory,
 // query_index, overlap, positive (0 or 1), verdict (right, near, wrong),

@@ -17,9 +17,7 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr double kCellSize = 0.2;  // [m]
-constexpr int kMaxIndexDifferenceOfNeighbours = 2;
-constexpr double kPositiveOverlap = 0.5;
+constexpr double kCellSize = 0.2;                   // [m]
 constexpr double kRightTranslation = 0.5;           // [m]
 constexpr double kWrongTranslation = 1.;            // [m]
 constexpr double kMaxRotation = 10. * M_PI / 180.;  // [rad]
@@ -76,9 +74,10 @@ PairTruth MakePairTruth(const Area& reference, const Area& query) {
       Centre(both.empty() ? query : both)};
 }
 
-bool ShareScans(const SubmapId& a, const SubmapId& b) {
+bool AreNeighbours(const SubmapId& a, const SubmapId& b,
+                   const int min_index_gap) {
   return a.trajectory == b.trajectory &&
-         std::abs(a.index - b.index) <= kMaxIndexDifferenceOfNeighbours;
+         std::abs(a.index - b.index) < min_index_gap;
 }
 
 AnswerVerdict Judge(const double translation_error,
@@ -109,6 +108,13 @@ AnswerLabel MakeLabel(const PairTruth& pair, const Rigid2& T_world_reference,
   label.rotation_error = std::abs(T_true_found.rotation());
   label.verdict = Judge(label.translation_error, label.rotation_error);
   return label;
+}
+
+int CountPositives(const PairTruths& pairs) {
+  return static_cast<int>(
+      std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) {
+        return pair.second.overlap >= kPositiveOverlap;
+      }));
 }
 
 // `answers` by falling score.
@@ -168,12 +174,14 @@ ObservedPoints ThinnedObservedPoints(const OccupancyGrid& grid) {
 }
 
 PairTruths ComputePairTruths(const std::map<SubmapId, ObservedPoints>& submaps,
-                             const Truth& truth) {
+                             const Truth& truth, const int min_index_gap) {
   const std::map<SubmapId, Area> areas = ObservedAreas(submaps, truth);
   PairTruths pairs;
   for (auto reference = areas.begin(); reference != areas.end(); ++reference) {
     for (auto query = std::next(reference); query != areas.end(); ++query) {
-      if (ShareScans(reference->first, query->first)) continue;
+      if (AreNeighbours(reference->first, query->first, min_index_gap)) {
+        continue;
+      }
       pairs[{reference->first, query->first}] =
           MakePairTruth(reference->second, query->second);
     }
@@ -243,10 +251,7 @@ MatchScore ScoreAnswers(const PairTruths& pairs,
                         const std::vector<AnswerLabel>& labels) {
   MatchScore score;
   score.num_pairs = static_cast<int>(pairs.size());
-  score.num_positives = static_cast<int>(
-      std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) {
-        return pair.second.overlap >= kPositiveOverlap;
-      }));
+  score.num_positives = CountPositives(pairs);
   score.num_answers = static_cast<int>(labels.size());
   std::vector<AnswerLabel> answers = labels;
   std::stable_sort(answers.begin(), answers.end(),
@@ -256,6 +261,19 @@ MatchScore ScoreAnswers(const PairTruths& pairs,
   FollowPrecisionRecallCurve(answers, &score);
   SummarizeErrors(answers, &score);
   return score;
+}
+
+PrecisionRecallCurve JudgeAnswers(const PairTruths& pairs,
+                                  const std::vector<AnswerLabel>& labels) {
+  std::vector<JudgedAnswer> answers;
+  for (const AnswerLabel& label : labels) {
+    if (label.verdict == AnswerVerdict::kWrong) {
+      answers.push_back({label.score, false});
+    } else if (label.verdict == AnswerVerdict::kRight && label.to_positive) {
+      answers.push_back({label.score, true});
+    }
+  }
+  return MakePrecisionRecallCurve(std::move(answers), CountPositives(pairs));
 }
 
 MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
@@ -42,9 +43,17 @@ struct PairTruth {
 };
 using PairTruths = std::map<std::pair<SubmapId, SubmapId>, PairTruth>;
 
-// Of the submaps of one map: pairs (reference, query) with reference < query.
+// Pairs with a larger common area, as a fraction of the smaller one's, are
+// positive.
+constexpr double kPositiveOverlap = 0.5;
+// Submaps of one trajectory share scans below this difference of indices.
+constexpr int kLeastIndexGap = 3;
+
+// Of the submaps of one map: pairs (reference, query) with reference < query;
+// of one trajectory, with indices that differ by `min_index_gap` or more.
 [[nodiscard]] PairTruths ComputePairTruths(
-    const std::map<SubmapId, ObservedPoints>& submaps, const Truth& truth);
+    const std::map<SubmapId, ObservedPoints>& submaps, const Truth& truth,
+    int min_index_gap = kLeastIndexGap);
 // Of each submap of the reference map with each of the query map; both truths
 // are in one world frame.
 [[nodiscard]] PairTruths ComputePairTruths(
@@ -105,6 +114,11 @@ struct MatchScore {
 // `labels` are LabelAnswers' for the same pairs.
 [[nodiscard]] MatchScore ScoreAnswers(const PairTruths& pairs,
                                       const std::vector<AnswerLabel>& labels);
+
+// The same over the threshold, answers of one score together: unlike above, the
+// order of the table does not matter.
+[[nodiscard]] PrecisionRecallCurve JudgeAnswers(
+    const PairTruths& pairs, const std::vector<AnswerLabel>& labels);
 
 // ScoreAnswers of LabelAnswers.
 [[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,

@@ -8,15 +8,17 @@
 #include <optional>
 
 #include "cartographer_sdf/loop_closing/closure_stages.h"
+#include "cartographer_sdf/loop_closing/neighbours.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.place), Validate(options.match),
-        Validate(options.retrieval), Validate(options.tear),
-        Validate(options.consistency), Validate(options.lifting),
-        Validate(options.optimization), Validate(options.withdrawal)}) {
+        Validate(options.retrieval), Validate(options.neighbourhood),
+        Validate(options.tear), Validate(options.consistency),
+        Validate(options.lifting), Validate(options.optimization),
+        Validate(options.withdrawal)}) {
     if (!error.empty()) return error;
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";
@@ -91,6 +93,14 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
                                         : std::nullopt,
                   map->places, options.min_index_gap, executor,
                   clock.Begin("match and verify"));
+  if (options.ask_neighbours) {
+    const std::map<SubmapId, OdometryPose> odometry =
+        OdometryPoses(result.state);
+    const PlacesAlongTrajectories places{&map->places, &odometry};
+    JudgeByNeighbours(options.neighbourhood, options.match, places, places,
+                      options.min_index_gap, executor,
+                      clock.Begin("ask neighbours"), &matches);
+  }
   result.num_matches = matches.size();
   for (Match& match : matches) {
     if (match.verdict != Verdict::kAccepted) continue;

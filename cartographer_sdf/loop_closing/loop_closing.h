@@ -23,6 +23,7 @@
 #include "cartographer_sdf/pose_graph/odometry_weights.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
 
 namespace cartographer_sdf {
 
@@ -35,6 +36,9 @@ struct LoopClosingOptions {
   // Whether only those pairs are matched that an index proposes; else all.
   bool use_retrieval = false;
   RetrievalOptions retrieval;
+  // Whether matches are judged again by the neighbours of both submaps.
+  bool ask_neighbours = true;
+  NeighbourhoodOptions neighbourhood;
   // Whether submaps that their own scans show to be torn are kept from voting:
   // their closures neither support nor contradict others, and enter the graph
   // only where others support them.

@@ -103,6 +103,27 @@ ClosureEvidence MakeEvidence(const Agreement& agreement,
   return evidence;
 }
 
+Match MakeMatch(const MatchOptions& options, const Place& reference,
+                const Place& query,
+                const std::vector<Correspondence>& correspondences,
+                Verification verification) {
+  Match match;
+  match.verdict = verification.verdict;
+  match.inliers =
+      CollectInliers(options.inlier_distance_meters, reference, query,
+                     correspondences, verification.T_reference_query);
+  match.closure =
+      LoopClosure{reference.id,
+                  query.id,
+                  verification.T_reference_query,
+                  verification.information,
+                  verification.score,
+                  MakeEvidence(verification.agreement,
+                               static_cast<int>(match.inliers.size()))};
+  match.verification = std::move(verification);
+  return match;
+}
+
 }  // namespace
 
 std::string Validate(const MatchOptions& options) {
@@ -153,21 +174,16 @@ std::optional<Match> MatchPlaces(const MatchOptions& options,
       options.verification, reference.surface, query.surface,
       ProposePoses(options.hypotheses, reference, query, correspondences));
   if (!verification) return std::nullopt;
-  Match match;
-  match.verdict = verification->verdict;
-  match.inliers =
-      CollectInliers(options.inlier_distance_meters, reference, query,
-                     correspondences, verification->T_reference_query);
-  match.closure =
-      LoopClosure{reference.id,
-                  query.id,
-                  verification->T_reference_query,
-                  verification->information,
-                  verification->score,
-                  MakeEvidence(verification->agreement,
-                               static_cast<int>(match.inliers.size()))};
-  match.verification = std::move(verification);
-  return match;
+  return MakeMatch(options, reference, query, correspondences,
+                   *std::move(verification));
+}
+
+Match MakeMatch(const MatchOptions& options, const Place& reference,
+                const Place& query, Verification verification) {
+  return MakeMatch(options, reference, query,
+                   FindCorrespondences(options.correspondence,
+                                       reference.features, query.features),
+                   std::move(verification));
 }
 
 }  // namespace cartographer_sdf

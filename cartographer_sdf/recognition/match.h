@@ -46,6 +46,14 @@ struct MatchOptions {
 [[nodiscard]] PlaceOptions PaperPlaceOptions();
 [[nodiscard]] MatchOptions PaperMatchOptions();
 
+// What neighbouring pairs of submaps, as a match predicts them, agree on; see
+// neighbourhood.h. Lengths of wall are weighted by certainty.
+struct NeighbourhoodEvidence {
+  int num_pairs = 0;
+  double wall_length = 0.;           // within what the other has observed [m]
+  double contradicting_length = 0.;  // of it, in the other's free space [m]
+};
+
 struct Match {
   Verdict verdict;
   LoopClosure closure;  // with score and evidence, accepted or not
@@ -53,6 +61,9 @@ struct Match {
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> inliers;
   // Absent for method kPaper.
   std::optional<Verification> verification;
+  // Absent where nobody asked; else score and verdict are those in the
+  // neighbourhood, and `verification` is the pair's own.
+  std::optional<NeighbourhoodEvidence> neighbourhood;
 };
 
 // Finds the poses in which a place resembles itself, by matching it with
@@ -63,6 +74,12 @@ void FindSelfSimilarities(const MatchOptions& options, Place* place);
 [[nodiscard]] std::optional<Match> MatchPlaces(const MatchOptions& options,
                                                const Place& reference,
                                                const Place& query);
+
+// The match that a verification of method kSdf amounts to; its score and
+// verdict are the verification's.
+[[nodiscard]] Match MakeMatch(const MatchOptions& options,
+                              const Place& reference, const Place& query,
+                              Verification verification);
 
 }  // namespace cartographer_sdf
 

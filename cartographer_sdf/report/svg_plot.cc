@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/report/markup.h"
@@ -146,15 +147,24 @@ std::string ColorName(const size_t series) {
                          byte(color.blue));
 }
 
-std::string Legend(const std::vector<std::string>& names) {
+std::string Legend(const std::vector<std::string>& names,
+                   const LegendCorner corner = LegendCorner::kTopRight) {
+  constexpr double kLine = 15.;
+  const bool is_right = corner == LegendCorner::kTopRight;
+  const double first = is_right
+                           ? kTop + 12.
+                           : kHeight - kBottom - 8. -
+                                 kLine * static_cast<double>(names.size() - 1);
   std::string svg;
   for (size_t i = 0; i < names.size(); ++i) {
-    const double y = kTop + 12. + 15. * static_cast<double>(i);
+    const double y = first + kLine * static_cast<double>(i);
     absl::StrAppendFormat(&svg,
                           "<rect x=\"%.1f\" y=\"%.1f\" width=\"10\" "
                           "height=\"10\" fill=\"%s\"/>\n",
-                          kWidth - kRight - 12., y - 9., ColorName(i));
-    svg += Text(kWidth - kRight - 18., y, "end", names[i]);
+                          is_right ? kWidth - kRight - 12. : kLeft + 6., y - 9.,
+                          ColorName(i));
+    svg += is_right ? Text(kWidth - kRight - 18., y, "end", names[i])
+                    : Text(kLeft + 22., y, "start", names[i]);
   }
   return svg;
 }
@@ -216,7 +226,20 @@ std::string RenderLinePlot(const LinePlot& plot) {
   }
   return Document(plot.title,
                   axes.Render(plot.title, plot.x.label, plot.y.label), content,
-                  Legend(names));
+                  Legend(names, plot.legend));
+}
+
+std::string StandaloneSvg(const std::string& plot) {
+  constexpr absl::string_view kBegin = "<svg ";
+  CHECK(absl::StartsWith(plot, kBegin));
+  return absl::StrFormat(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"%g\" "
+      "font-family=\"sans-serif\" color=\"black\" "
+      "style=\"background: white\">\n"
+      "<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n"
+      "%s</svg>\n",
+      kWidth, kHeight, plot);
 }
 
 std::string RenderHistogram(const HistogramPlot& plot) {

@@ -27,11 +27,14 @@ struct LineSeries {
   std::vector<Eigen::Vector2d> points;
 };
 
+enum class LegendCorner { kTopRight, kBottomLeft };
+
 struct LinePlot {
   std::string title;
   PlotAxis x;
   PlotAxis y;
   std::vector<LineSeries> series;
+  LegendCorner legend = LegendCorner::kTopRight;
 };
 
 struct HistogramSeries {
@@ -49,6 +52,9 @@ struct HistogramPlot {
 
 [[nodiscard]] std::string RenderLinePlot(const LinePlot& plot);
 [[nodiscard]] std::string RenderHistogram(const HistogramPlot& plot);
+
+// A plot as a file of its own, black on white.
+[[nodiscard]] std::string StandaloneSvg(const std::string& plot);
 
 // Counts of values in `num_bins` equal bins of [begin, end]; those outside are
 // counted in the first and the last bin, NaN nowhere.

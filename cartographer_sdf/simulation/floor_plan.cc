@@ -82,20 +82,57 @@ FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size, const double resolution) {
   return plan;
 }
 
-void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
-                   const double yaw, const bool occupied,
-                   FloorPlan* const plan) {
+namespace {
+
+template <typename Visitor>
+void VisitRectangle(const CellGeometry& geometry, const Eigen::Vector2d& centre,
+                    const Eigen::Vector2d& size, const double yaw,
+                    const Visitor& visit) {
   const Eigen::Matrix2d R_world_rectangle =
       Rigid2(centre, yaw).RotationMatrix();
   const Eigen::Matrix2d R_rectangle_world = R_world_rectangle.transpose();
   const Eigen::Vector2d half_size = 0.5 * size;
-  VisitBox(plan->geometry, centre, R_world_rectangle.cwiseAbs() * half_size,
+  VisitBox(geometry, centre, R_world_rectangle.cwiseAbs() * half_size,
            [&](const int i, const int j, const Eigen::Vector2d& offset) {
              const Eigen::Vector2d p_rectangle = R_rectangle_world * offset;
              if ((p_rectangle.array().abs() <= half_size.array()).all()) {
-               plan->occupied(i, j) = occupied;
+               visit(i, j);
              }
            });
+}
+
+// Sets the mask, which may be empty yet, where the rectangle is occupied.
+void MarkOccupied(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                  const double yaw, const bool value, const FloorPlan& plan,
+                  BoolArray* const mask) {
+  if (mask->size() == 0) {
+    *mask =
+        BoolArray::Constant(plan.occupied.rows(), plan.occupied.cols(), false);
+  }
+  VisitRectangle(plan.geometry, centre, size, yaw,
+                 [&](const int i, const int j) {
+                   if (plan.occupied(i, j)) (*mask)(i, j) = value;
+                 });
+}
+
+}  // namespace
+
+void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                   const double yaw, const bool occupied,
+                   FloorPlan* const plan) {
+  VisitRectangle(
+      plan->geometry, centre, size, yaw,
+      [&](const int i, const int j) { plan->occupied(i, j) = occupied; });
+}
+
+void MakeGlass(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+               const double yaw, FloorPlan* const plan) {
+  MarkOccupied(centre, size, yaw, true, *plan, &plan->glass);
+}
+
+void MakeUnseen(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                const double yaw, const bool unseen, FloorPlan* const plan) {
+  MarkOccupied(centre, size, yaw, unseen, *plan, &plan->unseen);
 }
 
 void FillDisc(const Eigen::Vector2d& centre, const double radius,

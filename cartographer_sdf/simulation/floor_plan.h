@@ -21,6 +21,11 @@ struct FloorPlan {
   CellGeometry geometry;
   // What stops light and robots; what lies outside the raster does, too.
   BoolArray occupied;
+  // Occupied cells that are of glass, which lets most beams through, and those
+  // that lie above or below the beams, as a table between its legs. Either is
+  // empty where there are none.
+  BoolArray glass;
+  BoolArray unseen;
 };
 
 // A plan of at least the given size [m] without any walls.
@@ -32,6 +37,13 @@ void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                    double yaw, bool occupied, FloorPlan* plan);
 void FillDisc(const Eigen::Vector2d& centre, double radius, bool occupied,
               FloorPlan* plan);
+
+// The same for what is occupied in the rectangle: makes it of glass, or sets
+// whether it is unseen.
+void MakeGlass(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+               double yaw, FloorPlan* plan);
+void MakeUnseen(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
+                double yaw, bool unseen, FloorPlan* plan);
 
 // Reads a grey PGM image (P2 or P5) whose pixels are squares of `resolution`
 // [m]. As in ROS maps, nearly white is free; the grey of the unknown and the

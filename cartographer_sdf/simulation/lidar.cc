@@ -8,6 +8,26 @@
 #include "cartographer_sdf/simulation/grid_traversal.h"
 
 namespace cartographer_sdf {
+namespace {
+
+// Where the beam meets the first person; nothing where it meets none.
+std::optional<double> RangeToPeople(const std::vector<Person>& people,
+                                    const Eigen::Vector2d& p_world,
+                                    const Eigen::Vector2d& direction) {
+  std::optional<double> range;
+  for (const Person& person : people) {
+    const Eigen::Vector2d to_person = person.position - p_world;
+    const double along = to_person.dot(direction);
+    const double half_chord_squared =
+        person.radius * person.radius - to_person.squaredNorm() + along * along;
+    if (along < 0. || half_chord_squared < 0.) continue;
+    const double hit = along - std::sqrt(half_chord_squared);
+    if (hit >= 0. && (!range || hit < *range)) range = hit;
+  }
+  return range;
+}
+
+}  // namespace
 
 std::string Validate(const LidarOptions& options) {
   if (options.num_beams < 1 || options.num_beams > 10000) {
@@ -25,13 +45,17 @@ std::string Validate(const LidarOptions& options) {
   if (!(options.drop_outs >= 0. && options.drop_outs <= 1.)) {
     return "drop_outs must lie between 0 and 1";
   }
+  if (!(options.glass_echo >= 0. && options.glass_echo <= 1.)) {
+    return "glass_echo must lie between 0 and 1";
+  }
   return "";
 }
 
 std::optional<double> CastRay(const FloorPlan& plan,
                               const Eigen::Vector2d& p_world,
                               const Eigen::Vector2d& direction,
-                              const double max_range) {
+                              const double max_range,
+                              const bool through_glass) {
   const double resolution = plan.geometry.resolution;
   const Eigen::Array2i size = plan.geometry.size;
   std::optional<double> range;
@@ -42,14 +66,17 @@ std::optional<double> CastRay(const FloorPlan& plan,
                     return false;
                   }
                   if (!plan.occupied(i, j)) return true;
+                  if (plan.unseen.size() > 0 && plan.unseen(i, j)) return true;
+                  if (through_glass && plan.glass(i, j)) return true;
                   range = t * max_range;
                   return false;
                 });
   return range;
 }
 
-Scan TakeScan(const FloorPlan& plan, const Rigid2& T_world_robot,
-              const LidarOptions& options, RandomNumbers* const random) {
+Scan TakeScan(const FloorPlan& plan, const std::vector<Person>& people,
+              const Rigid2& T_world_robot, const LidarOptions& options,
+              RandomNumbers* const random) {
   Scan scan;
   for (int k = 0; k != options.num_beams; ++k) {
     // Beams in the middles of equal sectors: none twice in a full circle.
@@ -58,10 +85,18 @@ Scan TakeScan(const FloorPlan& plan, const Rigid2& T_world_robot,
     const Eigen::Vector2d beam(std::cos(angle), std::sin(angle));
     const bool lost = random->Chance(options.drop_outs);
     const double noise = options.range_noise * random->Normal();
+    const bool through_glass =
+        plan.glass.size() > 0 && !random->Chance(options.glass_echo);
     if (lost) continue;
-    const std::optional<double> range =
-        CastRay(plan, T_world_robot.translation(),
-                T_world_robot.RotationMatrix() * beam, options.max_range);
+    const Eigen::Vector2d direction = T_world_robot.RotationMatrix() * beam;
+    std::optional<double> range =
+        RangeToPeople(people, T_world_robot.translation(), direction);
+    // Nobody stands within a wall, but beyond one or beyond the lidar's range.
+    const std::optional<double> to_wall =
+        CastRay(plan, T_world_robot.translation(), direction, options.max_range,
+                through_glass);
+    if (range && *range > options.max_range) range.reset();
+    if (to_wall && (!range || *to_wall < *range)) range = to_wall;
     if (range) {
       scan.returns.push_back(
           (std::max(0., *range + noise) * beam).cast<float>());

@@ -15,6 +15,7 @@
 
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
+#include "cartographer_sdf/simulation/people.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
 
 namespace cartographer_sdf {
@@ -28,6 +29,9 @@ struct LidarOptions {
   double range_noise = 0.015;
   // Fraction of the beams that are lost.
   double drop_outs = 0.005;
+  // Fraction of the beams on glass that return from it; the others see what is
+  // behind. Independent of the angle.
+  double glass_echo = 0.3;
 };
 
 [[nodiscard]] std::string Validate(const LidarOptions& options);
@@ -42,13 +46,18 @@ struct Scan {
 };
 
 // Distance from a point to the first occupied cell in a direction (of unit
-// norm); nothing where there is none within `max_range` or within the plan.
+// norm), those that are unseen left out, and if so asked those of glass;
+// nothing where there is none within `max_range` or within the plan.
 [[nodiscard]] std::optional<double> CastRay(const FloorPlan& plan,
                                             const Eigen::Vector2d& p_world,
                                             const Eigen::Vector2d& direction,
-                                            double max_range);
+                                            double max_range,
+                                            bool through_glass = false);
 
-[[nodiscard]] Scan TakeScan(const FloorPlan& plan, const Rigid2& T_world_robot,
+// `people` stand before the walls.
+[[nodiscard]] Scan TakeScan(const FloorPlan& plan,
+                            const std::vector<Person>& people,
+                            const Rigid2& T_world_robot,
                             const LidarOptions& options, RandomNumbers* random);
 
 }  // namespace cartographer_sdf

@@ -125,10 +125,23 @@ void DrawWalls(const AlignedBox2d& box, const double thickness,
   }
 }
 
+// Leaves of a table that stands in the plan what a lidar sees of it: the legs.
+void OpenTable(const Vector2d& centre, const Vector2d& size, const double yaw,
+               FloorPlan* const plan) {
+  const Vector2d leg = Vector2d::Constant(0.06);
+  MakeUnseen(centre, size, yaw, true, plan);
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      const Vector2d p_table = Vector2d(x, y).cwiseProduct(size - leg);
+      MakeUnseen(Rigid2(centre, yaw) * p_table, leg, yaw, false, plan);
+    }
+  }
+}
+
 // A piece of furniture with its back to a wall of the interior.
 void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
                     const double door_radius, RandomNumbers* const random,
-                    FloorPlan* const plan) {
+                    const bool is_open, FloorPlan* const plan) {
   const bool is_desk = random->Chance(0.5);
   const double depth =
       is_desk ? random->Uniform(0.6, 0.9) : random->Uniform(0.3, 0.55);
@@ -146,6 +159,7 @@ void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
   if ((centre - door).norm() < door_radius + 0.5 * length) return;
   FillRectangle(centre, size, 0., true, plan);
   if (!is_desk) return;
+  if (is_open) OpenTable(centre, size, 0., plan);
   Vector2d chair = centre;
   const double side =
       centre[1 - along] < interior.center()[1 - along] ? 1. : -1.;
@@ -157,7 +171,7 @@ void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
 // A round or rectangular table with chairs, or a pillar.
 void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
                      const double door_radius, RandomNumbers* const random,
-                     FloorPlan* const plan) {
+                     const bool is_open, FloorPlan* const plan) {
   constexpr double kMargin = 1.2;
   if (interior.sizes().minCoeff() < 2. * kMargin + 0.5) return;
   const Vector2d centre(random->Uniform(interior.min().x() + kMargin,
@@ -173,9 +187,15 @@ void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
       return;
     case 1:
       FillDisc(centre, radius, true, plan);
+      if (is_open) {
+        // The square within.
+        MakeUnseen(centre, Vector2d::Constant(2. * radius), 0., true, plan);
+        OpenTable(centre, Vector2d::Constant(M_SQRT2 * radius), yaw, plan);
+      }
       break;
     default:
       FillRectangle(centre, Vector2d(2. * radius, 0.8), yaw, true, plan);
+      if (is_open) OpenTable(centre, Vector2d(2. * radius, 0.8), yaw, plan);
   }
   for (int k = random->Index(4); k > 0; --k) {
     const double angle = random->Uniform(0., 2. * M_PI);
@@ -187,17 +207,18 @@ void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
 
 void FurnishRoom(const OfficeOptions& options, const Room& room,
                  const Vector2d& door, RandomNumbers* const random,
-                 FloorPlan* const plan) {
+                 RandomNumbers* const materials, FloorPlan* const plan) {
   const Vector2d inset = Vector2d::Constant(0.5 * options.wall_thickness);
   const AlignedBox2d interior(room.box.min() + inset, room.box.max() - inset);
   const double door_radius = 0.5 * options.door_width + kDoorMargin;
   const int pieces = static_cast<int>(
       std::lround(interior.volume() * options.furniture_density));
   for (int k = 0; k != pieces; ++k) {
+    const bool is_open = materials->Chance(options.open_tables);
     if (random->Chance(0.6)) {
-      AddAgainstWall(interior, door, door_radius, random, plan);
+      AddAgainstWall(interior, door, door_radius, random, is_open, plan);
     } else {
-      AddFreestanding(interior, door, door_radius, random, plan);
+      AddFreestanding(interior, door, door_radius, random, is_open, plan);
     }
   }
 }
@@ -248,6 +269,12 @@ std::string Validate(const OfficeOptions& options) {
   if (!(options.furniture_density >= 0. && options.furniture_density <= 1.)) {
     return "furniture_density must lie between 0 and 1 per square metre";
   }
+  if (!(options.glass_fronts >= 0. && options.glass_fronts <= 1.)) {
+    return "glass_fronts must lie between 0 and 1";
+  }
+  if (!(options.open_tables >= 0. && options.open_tables <= 1.)) {
+    return "open_tables must lie between 0 and 1";
+  }
   if (!(options.resolution >= 0.01 && options.resolution <= 0.1)) {
     return "resolution must lie between 0.01 m and 0.1 m";
   }
@@ -257,6 +284,7 @@ std::string Validate(const OfficeOptions& options) {
 FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
   CHECK_EQ(Validate(options), "");
   RandomNumbers random(seed);
+  RandomNumbers materials(seed, RandomStream::kMaterials);
   FloorPlan plan = EmptyFloorPlan(Vector2d(options.width, options.height),
                                   options.resolution);
   const std::vector<Room> rooms = MakeRooms(options, &random);
@@ -275,9 +303,17 @@ FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
           options.door_width * (Vector2d::Ones() - room.outward.cwiseAbs());
       FillRectangle(door, 1.5 * across + along, 0., false, &plan);
     }
-    FurnishRoom(options, room, door, &random, &plan);
+    FurnishRoom(options, room, door, &random, &materials, &plan);
     if (random.Chance(0.4))
       FurnishCorridor(options, room, door, &random, &plan);
+  }
+  for (const Room& room : rooms) {
+    if (materials.Chance(options.glass_fronts)) {
+      const Vector2d along = (room.wall_end - room.wall_begin).cwiseAbs();
+      const Vector2d across = options.wall_thickness * room.outward.cwiseAbs();
+      MakeGlass(0.5 * (room.wall_begin + room.wall_end), along + across, 0.,
+                &plan);
+    }
   }
   DrawWalls(
       AlignedBox2d(Vector2d::Zero(), Vector2d(options.width, options.height)),

@@ -26,6 +26,10 @@ struct OfficeOptions {
   double closed_doors = 0.12;
   // Pieces per square metre of room.
   double furniture_density = 0.14;
+  // Fraction of the rooms whose wall to the corridor is of glass, and of the
+  // tables of which a lidar sees the four legs only.
+  double glass_fronts = 0.;
+  double open_tables = 0.;
   // Finer than any map's, so that walls have no grid in common with it [m].
   double resolution = 0.025;
 };

@@ -15,7 +15,14 @@ namespace cartographer_sdf {
 
 // What the numbers are for: purposes that share a seed do not share numbers,
 // and one that needs more of them does not change the others.
-enum class RandomStream : uint32_t { kPlan, kDrive, kDrift, kLidar };
+enum class RandomStream : uint32_t {
+  kPlan,
+  kDrive,
+  kDrift,
+  kLidar,
+  kMaterials,
+  kPeople
+};
 
 class RandomNumbers {
  public:

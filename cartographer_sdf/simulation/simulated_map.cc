@@ -99,8 +99,8 @@ std::string Validate(const LocalSlamOptions& options) {
 std::string Validate(const SimulationOptions& options) {
   for (const std::string& problem :
        {Validate(options.drive), Validate(options.lidar),
-        Validate(options.drift), Validate(options.local_slam),
-        Validate(options.grid)}) {
+        Validate(options.people), Validate(options.drift),
+        Validate(options.local_slam), Validate(options.grid)}) {
     if (!problem.empty()) return problem;
   }
   return "";
@@ -115,6 +115,9 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
   const absl::StatusOr<std::vector<DrivenPose>> drive =
       Drive(plan, options.drive, seed);
   if (!drive.ok()) return drive.status();
+  const absl::StatusOr<People> people =
+      PlacePeople(plan, options.people, drive->back().seconds, seed);
+  if (!people.ok()) return people.status();
   RandomNumbers drift_random(seed, RandomStream::kDrift);
   const std::vector<DriftedPose> drifted =
       AddDrift(*drive, options.drift, &drift_random);
@@ -134,8 +137,8 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
   RandomNumbers lidar_random(seed, RandomStream::kLidar);
   for (const size_t k : kept) {
     const DrivenPose& pose = (*drive)[k];
-    scans.push_back(
-        TakeScan(plan, pose.T_world_robot, options.lidar, &lidar_random));
+    scans.push_back(TakeScan(plan, people->At(pose.seconds, pose.T_world_robot),
+                             pose.T_world_robot, options.lidar, &lidar_random));
     map.nodes.push_back(
         {ToTicks(pose.seconds), drifted[k].T_local_robot, pose.T_world_robot,
          FilterVoxels(scans.back().returns, options.local_slam.voxel_size)});

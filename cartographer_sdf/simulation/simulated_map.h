@@ -23,6 +23,7 @@
 #include "cartographer_sdf/simulation/drive.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/lidar.h"
+#include "cartographer_sdf/simulation/people.h"
 #include "cartographer_sdf/simulation/submap_grid.h"
 
 namespace cartographer_sdf {
@@ -41,6 +42,7 @@ struct LocalSlamOptions {
 struct SimulationOptions {
   DriveOptions drive;
   LidarOptions lidar;
+  PeopleOptions people;
   DriftOptions drift;
   LocalSlamOptions local_slam;
   SubmapGridOptions grid;

@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
@@ -9,21 +11,24 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
 #include "cartographer_sdf/evaluation/match_score.h"
 #include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/evaluation/place_recognition.h"
+#include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/evaluation/relations.h"
 #include "cartographer_sdf/evaluation/text_file.h"
 #include "cartographer_sdf/evaluation/trajectory_error.h"
 #include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/report/svg_plot.h"
+#include "cartographer_sdf/tools/evaluate_random_pairs.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/measurement.h"
 #include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/subcommand.h"
-#include "cartographer_sdf/tools/text_table.h"
 
 DEFINE_string(relations, "",
               "Relations of scans that were verified by hand, lines of i, j, "
@@ -31,24 +36,30 @@ DEFINE_string(relations, "",
 DEFINE_double(seconds_per_scan, 0.1,
               "Scan i of the relations has the stamp 1e9 + i * this in the "
               "map [s].");
-DEFINE_string(matches, "", "Matches to score, as `match` writes them.");
+DEFINE_string(matches, "",
+              "Matches to score, as `match` writes them; several files are "
+              "separated by commas.");
 DEFINE_string(labels, "",
-              "The file to write to what the truth says of each match.");
+              "The file to write to what the truth says of each match; of "
+              "several files of matches as many, separated by commas.");
 DEFINE_string(query_truth, "",
               "True poses of the second map, in the world of the first.");
 DEFINE_string(csv, "", "The file to write all numbers to.");
+DEFINE_string(
+    curves, "",
+    "The file to write precision and recall over the threshold to: of "
+    "--random_pairs, each method a series, and of --matches.");
+DEFINE_string(plot, "",
+              "The file to draw the same curves to, an SVG; without those of "
+              "--max_clearances.");
+DEFINE_string(free_space_plot, "",
+              "The file to draw to the curves of the paper's method by "
+              "--max_clearances, beside shape_context, an SVG.");
 
 namespace cartographer_sdf {
 namespace {
 
 constexpr double kDegree = M_PI / 180.;
-
-// A line of the result: what was measured, and the numbers by name. A number
-// that does not exist is absent.
-struct Measurement {
-  std::string subject;
-  std::vector<std::pair<std::string, std::optional<double>>> numbers;
-};
 
 struct EvaluatedMap {
   PoseGraph pose_graph;
@@ -124,14 +135,16 @@ absl::Status MeasureTrajectory(const PoseGraph& pose_graph, const Truth& truth,
   return absl::OkStatus();
 }
 
-Measurement MeasureMatches(const MatchScore& score) {
+Measurement MeasureMatches(const std::string& subject, const MatchScore& score,
+                           const PrecisionRecallCurve& curve) {
   std::optional<double> median_degrees = score.median_rotation_error;
   if (median_degrees.has_value()) *median_degrees /= kDegree;
-  return {"matches",
+  return {subject,
           {{"pairs", score.num_pairs},
            {"positives", score.num_positives},
            {"answers", score.num_answers},
            {"recall_p1", score.recall_at_precision_1},
+           {"recall_p1_ties", curve.RecallAtPrecision1()},
            {"recall_p99", score.recall_at_precision_99},
            {"ap", score.average_precision},
            {"threshold", score.threshold},
@@ -141,69 +154,121 @@ Measurement MeasureMatches(const MatchScore& score) {
            {"median_deg", median_degrees}}};
 }
 
+Measurement MeasureAccepted(const std::string& subject,
+                            const PlaceRecognitionScore& score) {
+  return {subject,
+          {{"right", score.num_right},
+           {"near", score.num_near},
+           {"wrong", score.num_wrong},
+           {"unknown", score.num_unknown},
+           {"queries", score.num_queries},
+           {"queries_positive", score.num_queries_with_positive},
+           {"queries_matched", score.num_queries_matched},
+           {"queries_right", score.num_queries_right}}};
+}
+
+std::vector<std::string> FilesOf(const std::string& flag) {
+  return absl::StrSplit(flag, ',', absl::SkipEmpty());
+}
+
+// What results of a table of matches are called: of several, each after its
+// file.
+std::string SeriesName(const std::string& path) {
+  std::string name = std::filesystem::path(path).stem().string();
+  std::replace_if(
+      name.begin(), name.end(),
+      [](const unsigned char c) { return c < ' ' || c == ',' || c == '"'; },
+      '_');
+  return name;
+}
+
 absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
-                                 std::vector<Measurement>* const measurements) {
-  const absl::StatusOr<std::vector<MatchRow>> matches =
-      ReadMatches(FLAGS_matches);
-  if (!matches.ok()) return matches.status();
-  PairTruths pairs;
-  std::vector<AnswerLabel> labels;
-  if (FLAGS_query.empty()) {
-    pairs = ComputePairTruths(map.observed, truth);
-    labels = LabelAnswers(pairs, truth, *matches);
-  } else {
-    const absl::StatusOr<EvaluatedMap> query =
+                                 std::vector<Measurement>* const measurements,
+                                 std::vector<NamedCurve>* const curves) {
+  std::optional<EvaluatedMap> query;
+  Truth query_truth;
+  if (!FLAGS_query.empty()) {
+    absl::StatusOr<EvaluatedMap> read =
         ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
-    if (!query.ok()) return query.status();
-    const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
-    if (!query_truth.ok()) return query_truth.status();
-    pairs =
-        ComputePairTruths(map.observed, truth, query->observed, *query_truth);
-    labels = LabelAnswers(pairs, truth, *query_truth, *matches);
+    if (!read.ok()) return read.status();
+    query = *std::move(read);
+    absl::StatusOr<Truth> read_truth = ReadTruth(FLAGS_query_truth);
+    if (!read_truth.ok()) return read_truth.status();
+    query_truth = *std::move(read_truth);
   }
-  measurements->push_back(MeasureMatches(ScoreAnswers(pairs, labels)));
-  if (FLAGS_labels.empty()) return absl::OkStatus();
-  return WriteAnswerLabels(FLAGS_labels, labels);
+  const PairTruths pairs =
+      query
+          ? ComputePairTruths(map.observed, truth, query->observed, query_truth)
+          : ComputePairTruths(map.observed, truth);
+  const std::vector<std::string> files = FilesOf(FLAGS_matches);
+  std::vector<Measurement> accepted;
+  const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
+  for (size_t k = 0; k < files.size(); ++k) {
+    const std::string& file = files[k];
+    const absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(file);
+    if (!matches.ok()) return matches.status();
+    const std::vector<AnswerLabel> labels =
+        query ? LabelAnswers(pairs, truth, query_truth, *matches)
+              : LabelAnswers(pairs, truth, *matches);
+    const std::string suffix =
+        files.size() == 1 ? "" : absl::StrCat(" ", SeriesName(file));
+    const PrecisionRecallCurve curve = JudgeAnswers(pairs, labels);
+    measurements->push_back(MeasureMatches(absl::StrCat("matches", suffix),
+                                           ScoreAnswers(pairs, labels), curve));
+    accepted.push_back(
+        MeasureAccepted(absl::StrCat("accepted", suffix),
+                        ScorePlaceRecognition(pairs, labels, *matches)));
+    curves->push_back({SeriesName(file), curve, /*is_variant=*/false});
+    if (label_files.empty()) continue;
+    const absl::Status status = WriteAnswerLabels(label_files[k], labels);
+    if (!status.ok()) return status;
+  }
+  measurements->insert(measurements->end(), accepted.begin(), accepted.end());
+  return absl::OkStatus();
 }
 
-std::string FormatNumber(const std::optional<double>& number) {
-  if (!number.has_value()) return "-";
-  return *number == std::round(*number) ? absl::StrFormat("%.0f", *number)
-                                        : absl::StrFormat("%.3f", *number);
+std::string DrawCurves(const std::string& title,
+                       const std::vector<NamedCurve>& curves) {
+  LinePlot plot;
+  plot.title = title;
+  plot.x = {"recall", std::make_pair(0., 1.)};
+  plot.y = {"precision", std::make_pair(0., 1.05)};
+  plot.legend = LegendCorner::kBottomLeft;
+  for (const NamedCurve& curve : curves) {
+    LineSeries series{curve.name, {}};
+    for (const PrecisionRecallPoint& point : curve.curve.points) {
+      series.points.emplace_back(point.recall, point.precision);
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return StandaloneSvg(RenderLinePlot(plot));
 }
 
-// Measurements of the same numbers share a table.
-std::string FormatMeasurements(const std::vector<Measurement>& measurements) {
-  std::string text;
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> header;
-  for (const Measurement& measurement : measurements) {
-    std::vector<std::string> names = {""};
-    std::vector<std::string> row = {measurement.subject};
-    for (const auto& [name, number] : measurement.numbers) {
-      names.push_back(name);
-      row.push_back(FormatNumber(number));
-    }
-    if (names != header) {
-      text += FormatTable(rows);
-      rows = {names};
-      header = names;
-    }
-    rows.push_back(row);
+absl::Status WriteResults(const std::vector<Measurement>& measurements,
+                          const std::vector<NamedCurve>& curves) {
+  absl::Status status;
+  if (!FLAGS_csv.empty()) status = WriteMeasurements(FLAGS_csv, measurements);
+  if (status.ok() && !FLAGS_curves.empty()) {
+    status = WriteCurves(FLAGS_curves, curves);
   }
-  return text + FormatTable(rows);
-}
-
-absl::Status WriteMeasurements(const std::vector<Measurement>& measurements) {
-  std::string content = "subject,quantity,value\n";
-  for (const Measurement& measurement : measurements) {
-    for (const auto& [name, number] : measurement.numbers) {
-      if (!number.has_value()) continue;
-      absl::StrAppendFormat(&content, "%s,%s,%.9g\n", measurement.subject, name,
-                            *number);
+  std::vector<NamedCurve> of_methods, of_free_space;
+  for (const NamedCurve& curve : curves) {
+    if (!curve.is_variant) of_methods.push_back(curve);
+    if (curve.is_variant || curve.name == "paper" ||
+        curve.name == "shape_context") {
+      of_free_space.push_back(curve);
     }
   }
-  return WriteWholeFile(FLAGS_csv, content);
+  if (status.ok() && !FLAGS_plot.empty()) {
+    status = WriteWholeFile(FLAGS_plot,
+                            DrawCurves("Precision and recall", of_methods));
+  }
+  if (status.ok() && !FLAGS_free_space_plot.empty()) {
+    status = WriteWholeFile(
+        FLAGS_free_space_plot,
+        DrawCurves("Features within a distance of walls", of_free_space));
+  }
+  return status;
 }
 
 absl::Status CheckFlags() {
@@ -219,14 +284,25 @@ absl::Status CheckFlags() {
   if (!FLAGS_query.empty() && FLAGS_matches.empty()) {
     return UsageError("--query needs --matches");
   }
-  if (!FLAGS_labels.empty() && FLAGS_matches.empty()) {
-    return UsageError("--labels needs --matches");
+  if (!FLAGS_labels.empty() &&
+      FilesOf(FLAGS_labels).size() != FilesOf(FLAGS_matches).size()) {
+    return UsageError("--labels needs --matches, a file for each");
+  }
+  if (WantsRandomPairs() && FLAGS_truth.empty()) {
+    return UsageError("--random_pairs needs --truth");
+  }
+  if (!FLAGS_free_space_plot.empty() && !WantsRandomPairs()) {
+    return UsageError("--free_space_plot needs --random_pairs");
+  }
+  if ((!FLAGS_curves.empty() || !FLAGS_plot.empty()) && FLAGS_matches.empty() &&
+      !WantsRandomPairs()) {
+    return UsageError("--curves and --plot need --matches or --random_pairs");
   }
   if (!(FLAGS_seconds_per_scan > 0.) ||
       !std::isfinite(FLAGS_seconds_per_scan)) {
     return UsageError("--seconds_per_scan must be positive");
   }
-  return absl::OkStatus();
+  return CheckRandomPairFlags();
 }
 
 absl::Status RunEvaluate() {
@@ -242,6 +318,7 @@ absl::Status RunEvaluate() {
       ReadEvaluatedMap(FLAGS_input, !FLAGS_matches.empty());
   if (!map.ok()) return map.status();
   std::vector<Measurement> measurements;
+  std::vector<NamedCurve> curves;
   if (!FLAGS_relations.empty()) {
     status = MeasureRelations(map->pose_graph, &measurements);
     if (!status.ok()) return status;
@@ -251,13 +328,15 @@ absl::Status RunEvaluate() {
     if (!status.ok()) return status;
   }
   if (!FLAGS_matches.empty()) {
-    status = ScoreMatchesOfFlags(*map, truth, &measurements);
+    status = ScoreMatchesOfFlags(*map, truth, &measurements, &curves);
     if (!status.ok()) return status;
   }
-  if (!FLAGS_csv.empty()) {
-    status = WriteMeasurements(measurements);
+  if (WantsRandomPairs()) {
+    status = MeasureRandomPairs(truth, &measurements, &curves);
     if (!status.ok()) return status;
   }
+  status = WriteResults(measurements, curves);
+  if (!status.ok()) return status;
   std::cout << FormatMeasurements(measurements);
   return absl::OkStatus();
 }
@@ -268,19 +347,45 @@ Subcommand Evaluate() {
   return Subcommand{
       "evaluate",
       "errors of a map and of matches against the truth",
-      "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv]]",
+      "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
+      "[--random_pairs N]]",
       "Errors of scans against --relations, of all and of those more than 30 s "
       "apart; of nodes against --truth after a rigid alignment; and scores of "
       "--matches: of answers by falling score, the fraction of positive pairs "
       "that are answered before the first wrong one (recall_p1), at a "
-      "precision of 0.99 (recall_p99), and average precision (ap).\n\n"
+      "precision of 0.99 (recall_p99), and average precision (ap). Answers of "
+      "one score count in the order of the table, in recall_p1_ties all "
+      "together. Of several tables each gets its line.\n\n"
       "A pair of submaps is positive where half of the smaller observed area "
       "lies in the other. An answer is right within 0.5 m and 10 degrees of "
       "the truth, wrong beyond 1 m or 10 degrees, and near between. --labels "
-      "writes this for each match.",
+      "writes this for each match.\n\n"
+      "--random_pairs is the protocol of the paper: pairs drawn by "
+      "--pair_seed, "
+      "one submap of each turned before it is described, matched by --methods. "
+      "An answer is right where the pair's common area reaches "
+      "--min_overlaps; in the columns with _pose, where its pose is, too.",
       {"input"},
-      {"relations", "seconds_per_scan", "truth", "matches", "labels", "query",
-       "query_truth", "csv"},
+      {"relations",
+       "seconds_per_scan",
+       "truth",
+       "matches",
+       "labels",
+       "query",
+       "query_truth",
+       "csv",
+       "curves",
+       "plot",
+       "free_space_plot",
+       "random_pairs",
+       "methods",
+       "pair_seed",
+       "min_overlaps",
+       "min_index_gap",
+       "max_clearances",
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunEvaluate};
 }
 

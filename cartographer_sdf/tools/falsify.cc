@@ -109,8 +109,7 @@ Subcommand FalsifySubcommand() {
       "falsify",
       "add wrong constraints to a map, to test audit with",
       "--input A.pbstream --output B.pbstream --wrong_constraints W.csv "
-      "[--kinds K,...] "
-      "[--pairs N] [--seed N]",
+      "[--kinds K,...] [--pairs N] [--seed N]",
       "Takes the map for right, adds inter-submap constraints that are wrong, "
       "and optimises, so that the map is bent as Cartographer's would be. "
       "--wrong_constraints names them: the constraint's number in the file, "
@@ -119,7 +118,8 @@ Subcommand FalsifySubcommand() {
       {"input", "output", "wrong_constraints"},
       {"kinds", "pairs", "seed", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},
-      &RunFalsify};
+      &RunFalsify,
+      /*is_for_developers=*/true};
 }
 
 }  // namespace cartographer_sdf

@@ -66,6 +66,10 @@ std::vector<std::string> ConfigurationDirectories() {
 }
 
 absl::StatusOr<Options> LoadOptionsOfFlags() {
+  return LoadOptionsOfFlags(FLAGS_configuration_basename);
+}
+
+absl::StatusOr<Options> LoadOptionsOfFlags(const std::string& basename) {
   // Else a misspelt one would be passed over for the defaults.
   for (const std::string& directory : GivenDirectories()) {
     std::error_code ignored;
@@ -74,7 +78,7 @@ absl::StatusOr<Options> LoadOptionsOfFlags() {
                                               directory, " is no directory"));
     }
   }
-  return LoadOptions(ConfigurationDirectories(), FLAGS_configuration_basename);
+  return LoadOptions(ConfigurationDirectories(), basename);
 }
 
 absl::StatusOr<int> NumThreadsOfFlags() {

@@ -32,8 +32,11 @@ namespace cartographer_sdf {
 // --configuration_directory, then where the program was built and installed.
 [[nodiscard]] std::vector<std::string> ConfigurationDirectories();
 
-// As of --configuration_directory and --configuration_basename.
+// As of --configuration_directory and --configuration_basename, or of another
+// file.
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
+[[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags(
+    const std::string& basename);
 
 // As of --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/tools/simulate.h"
 
+#include <algorithm>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -19,6 +20,11 @@ absl::Status RunSimulate(const SimulateArguments& arguments,
   }
   SimulationOptions options;
   options.drive.length = arguments.length;
+  options.lidar = arguments.lidar;
+  options.people = arguments.people;
+  // What a lidar cannot see it must not call free.
+  options.grid.empty_beam_length =
+      std::min(options.grid.empty_beam_length, options.lidar.max_range);
   const absl::StatusOr<FloorPlan> plan =
       arguments.plan_path
           ? ReadPgm(*arguments.plan_path, arguments.plan_resolution)

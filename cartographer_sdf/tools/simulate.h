@@ -11,7 +11,9 @@
 #include "absl/status/status.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/simulation/drive.h"
+#include "cartographer_sdf/simulation/lidar.h"
 #include "cartographer_sdf/simulation/office.h"
+#include "cartographer_sdf/simulation/people.h"
 
 namespace cartographer_sdf {
 
@@ -23,6 +25,8 @@ struct SimulateArguments {
   std::optional<std::string> plan_path;
   double plan_resolution = 0.05;
   OfficeOptions office;
+  LidarOptions lidar;
+  PeopleOptions people;
   // Way to go [m].
   double length = DriveOptions().length;
   // Of the office; and of the drive, drift and noise: sessions in one building

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
 #include <iostream>
 
 #include "cartographer_sdf/tools/flags.h"
@@ -13,6 +14,22 @@ DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
 DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
 DEFINE_double(plan_width, 40., "Of the office that is invented [m].");
 DEFINE_double(plan_height, 30., "Of the office that is invented [m].");
+DEFINE_double(plan_wall_thickness, 0.15, "Of the office that is invented [m].");
+DEFINE_double(plan_furniture, 0.14,
+              "Pieces per square metre of room of the office that is "
+              "invented.");
+DEFINE_double(glass_fronts, 0.,
+              "Fraction of the rooms of the invented office whose wall to the "
+              "corridor is of glass.");
+DEFINE_double(glass_echo, 0.3, "Fraction of the beams that glass returns.");
+DEFINE_double(open_tables, 0.,
+              "Fraction of the tables of the invented office that are seen as "
+              "four legs.");
+DEFINE_int32(walking_people, 0, "Who walk through the building all the time.");
+DEFINE_int32(standing_people, 0,
+             "Who stand somewhere for two minutes, and then elsewhere.");
+DEFINE_double(lidar_range, 20., "Echoes from farther away are lost [m].");
+DEFINE_double(lidar_field_of_view, 270., "About the way ahead [deg].");
 DEFINE_double(length, 360., "How far the robot drives [m].");
 DEFINE_uint32(seed, 1,
               "Of what is random: in simulate the drive, its drift and the "
@@ -30,6 +47,15 @@ absl::Status RunSimulateOfFlags() {
   arguments.plan_resolution = FLAGS_map_resolution;
   arguments.office.width = FLAGS_plan_width;
   arguments.office.height = FLAGS_plan_height;
+  arguments.office.wall_thickness = FLAGS_plan_wall_thickness;
+  arguments.office.furniture_density = FLAGS_plan_furniture;
+  arguments.office.glass_fronts = FLAGS_glass_fronts;
+  arguments.office.open_tables = FLAGS_open_tables;
+  arguments.lidar.glass_echo = FLAGS_glass_echo;
+  arguments.lidar.max_range = FLAGS_lidar_range;
+  arguments.lidar.field_of_view = FLAGS_lidar_field_of_view * M_PI / 180.;
+  arguments.people.num_walking = FLAGS_walking_people;
+  arguments.people.num_standing = FLAGS_standing_people;
   arguments.length = FLAGS_length;
   arguments.plan_seed = FLAGS_plan_seed;
   arguments.drive_seed = FLAGS_seed;
@@ -54,7 +80,9 @@ Subcommand SimulateSubcommand() {
       "closing, and the true poses of its submaps and nodes.",
       {"output", "truth"},
       {"map", "map_resolution", "plan_seed", "plan_width", "plan_height",
-       "length", "seed"},
+       "plan_wall_thickness", "plan_furniture", "glass_fronts", "glass_echo",
+       "open_tables", "walking_people", "standing_people", "lidar_range",
+       "lidar_field_of_view", "length", "seed"},
       &RunSimulateOfFlags};
 }
 

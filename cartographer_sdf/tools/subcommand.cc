@@ -16,6 +16,7 @@ Subcommand AuditSubcommand();
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
 Subcommand FalsifySubcommand();
+Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
 Subcommand MergeSubcommand();
@@ -23,9 +24,16 @@ Subcommand RelocalizeSubcommand();
 Subcommand SimulateSubcommand();
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(),   RelocalizeSubcommand(),
-          MergeSubcommand(),      AuditSubcommand(),   Evaluate(),
-          SimulateSubcommand(),   FalsifySubcommand(), Info()};
+  return {CloseLoopsSubcommand(),
+          MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
+          AuditSubcommand(),
+          Evaluate(),
+          Figures(),
+          SimulateSubcommand(),
+          FalsifySubcommand(),
+          Info()};
 }
 
 absl::Status UsageError(const std::string& message) {

@@ -31,6 +31,8 @@ struct Subcommand {
   // Called once, with the flags set. An error's message becomes the one line on
   // stderr and the exit code 1, or 2 for a UsageError.
   absl::Status (*run)() = nullptr;
+  // For those who work on the project: the general help does not list it.
+  bool is_for_developers = false;
 };
 
 // In the order of the help.

@@ -20,6 +20,9 @@ constexpr double kDistinctRotation = 0.35;
 // More would only cost time: the best ones make the closest rivals.
 constexpr size_t kMaxNumSelfSimilarPoses = 3;
 
+// A rival whose score is lower by more than this is not worth mentioning.
+constexpr double kCloseRivalGap = 2.;
+
 // Along a corridor the pose may as well be off by these [m].
 constexpr double kSlides[] = {-3., -1.5, 1.5, 3.};
 
@@ -43,25 +46,6 @@ Eigen::Vector2d Middle(const SurfaceModel& model) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& point : model.observed_points) sum += point;
   return sum / static_cast<double>(model.observed_points.size());
-}
-
-Verdict Judge(const VerificationOptions& options,
-              const Verification& verification) {
-  const Agreement& agreement = verification.agreement;
-  if (agreement.overlap_area < options.min_overlap_area) {
-    return Verdict::kTooLittleOverlap;
-  }
-  if (std::max(agreement.query_in_reference.ContradictionRatio(),
-               agreement.reference_in_query.ContradictionRatio()) >
-      options.max_contradiction_ratio) {
-    return Verdict::kContradicted;
-  }
-  if (agreement.min_scatter_eigenvalue < options.min_scatter_eigenvalue) {
-    return Verdict::kDegenerate;
-  }
-  if (verification.margin < options.min_margin) return Verdict::kAmbiguous;
-  if (verification.score < options.min_score) return Verdict::kUnlikely;
-  return Verdict::kAccepted;
 }
 
 // A refined pose and how well it agrees, not yet judged.
@@ -101,6 +85,13 @@ std::optional<Candidate> Refine(const VerificationOptions& options,
                    Score(options.score_weights, agreement, 0.)};
 }
 
+// Stable: of equal ones the first.
+void SortByScore(std::vector<Candidate>* const candidates) {
+  std::stable_sort(
+      candidates->begin(), candidates->end(),
+      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+}
+
 bool IsDistinct(const Rigid2& a, const Rigid2& b,
                 const Eigen::Vector2d& middle) {
   return !AreNear(a, b, middle, kDistinctDistance, kDistinctRotation);
@@ -118,10 +109,7 @@ std::vector<Candidate> RefineBest(const VerificationOptions& options,
         Refine(options, reference, query, T_reference_query);
     if (candidate) candidates.push_back(*std::move(candidate));
   }
-  // Stable: of equal ones the first.
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  SortByScore(&candidates);
   return candidates;
 }
 
@@ -184,16 +172,69 @@ std::vector<Candidate> Rivals(const VerificationOptions& options,
   return rivals;
 }
 
-double MarginOf(const std::vector<Candidate>& candidates, const Candidate& best,
-                const Eigen::Vector2d& middle) {
-  double margin = kMaxMargin;
-  for (const Candidate& rival : candidates) {
-    if (IsDistinct(rival.registration.T_reference_query,
-                   best.registration.T_reference_query, middle)) {
-      margin = std::min(margin, best.score - rival.score);
+// Those that are not the same pose as `candidate`.
+std::vector<Candidate> DistinctFrom(const Candidate& candidate,
+                                    const std::vector<Candidate>& others,
+                                    const Eigen::Vector2d& middle) {
+  std::vector<Candidate> distinct;
+  for (const Candidate& other : others) {
+    if (IsDistinct(other.registration.T_reference_query,
+                   candidate.registration.T_reference_query, middle)) {
+      distinct.push_back(other);
     }
   }
-  return std::max(margin, 0.);
+  return distinct;
+}
+
+// The candidate against the others, which may be the same pose, and, where it
+// is more likely right than wrong, against what nobody proposed.
+Verification Verify(const VerificationOptions& options,
+                    const SurfaceModel& reference, const SurfaceModel& query,
+                    const Candidate& candidate,
+                    const std::vector<Candidate>& others,
+                    const Eigen::Vector2d& middle) {
+  std::vector<Candidate> rivals = DistinctFrom(candidate, others, middle);
+  const auto margin = [&rivals, &candidate] {
+    double margin = kMaxMargin;
+    for (const Candidate& rival : rivals) {
+      margin = std::min(margin, candidate.score - rival.score);
+    }
+    return std::max(margin, -kMaxMargin);
+  };
+  const auto score = [&options, &candidate, &margin] {
+    return Score(options.score_weights, candidate.agreement, margin());
+  };
+  // Only then, as few pairs get here.
+  if (score() > 0. || options.min_score <= 0.) {
+    for (Candidate& rival :
+         DistinctFrom(candidate,
+                      Rivals(options, reference, query, candidate.registration),
+                      middle)) {
+      rivals.push_back(std::move(rival));
+    }
+  }
+  Verification verification;
+  verification.T_reference_query = candidate.registration.T_reference_query;
+  verification.information =
+      candidate.registration.normal_matrix / (kResidualSigma * kResidualSigma);
+  verification.agreement = candidate.agreement;
+  verification.margin = margin();
+  verification.score = score();
+  verification.verdict = Judge(options, verification.agreement,
+                               verification.score, verification.margin);
+  SortByScore(&rivals);
+  for (const Candidate& rival : rivals) {
+    if (verification.rivals.size() >= kMaxNumRivals ||
+        rival.score < candidate.score - kCloseRivalGap) {
+      break;
+    }
+    const Rigid2& pose = rival.registration.T_reference_query;
+    const bool is_new = std::all_of(
+        verification.rivals.begin(), verification.rivals.end(),
+        [&](const Rigid2& other) { return IsDistinct(pose, other, middle); });
+    if (is_new) verification.rivals.push_back(pose);
+  }
+  return verification;
 }
 
 }  // namespace
@@ -244,6 +285,24 @@ std::string Validate(const VerificationOptions& options) {
   return "";
 }
 
+Verdict Judge(const VerificationOptions& options, const Agreement& agreement,
+              const double score, const double margin) {
+  if (agreement.overlap_area < options.min_overlap_area) {
+    return Verdict::kTooLittleOverlap;
+  }
+  if (std::max(agreement.query_in_reference.ContradictionRatio(),
+               agreement.reference_in_query.ContradictionRatio()) >
+      options.max_contradiction_ratio) {
+    return Verdict::kContradicted;
+  }
+  if (agreement.min_scatter_eigenvalue < options.min_scatter_eigenvalue) {
+    return Verdict::kDegenerate;
+  }
+  if (margin < options.min_margin) return Verdict::kAmbiguous;
+  if (score < options.min_score) return Verdict::kUnlikely;
+  return Verdict::kAccepted;
+}
+
 double Agreement::WallEvidence() const {
   // Chance finds poses under which about three of four walls agree.
   constexpr double kHitRatioByChance = 0.75;
@@ -285,26 +344,40 @@ std::optional<Verification> VerifyHypotheses(
   const std::vector<Candidate> candidates =
       RefineBest(options, reference, query, hypotheses, middle);
   if (candidates.empty()) return std::nullopt;
-  const Candidate& best = candidates.front();
-  Verification verification;
-  verification.T_reference_query = best.registration.T_reference_query;
-  verification.information =
-      best.registration.normal_matrix / (kResidualSigma * kResidualSigma);
-  verification.agreement = best.agreement;
-  verification.margin = MarginOf(candidates, best, middle);
-  verification.score =
-      Score(options.score_weights, best.agreement, verification.margin);
-  // Only now, as few pairs get here.
-  if (verification.score > 0. || options.min_score <= 0.) {
-    verification.margin =
-        std::min(verification.margin,
-                 MarginOf(Rivals(options, reference, query, best.registration),
-                          best, middle));
-    verification.score =
-        Score(options.score_weights, best.agreement, verification.margin);
+  return Verify(options, reference, query, candidates.front(), candidates,
+                middle);
+}
+
+std::vector<Verification> VerifyPoses(const VerificationOptions& options,
+                                      const SurfaceModel& reference,
+                                      const SurfaceModel& query,
+                                      const std::vector<Rigid2>& poses) {
+  CHECK_EQ(Validate(options), "");
+  const Eigen::Vector2d middle = Middle(query);
+  std::vector<Candidate> candidates;
+  for (const Rigid2& T_reference_query : poses) {
+    std::optional<Candidate> candidate =
+        Refine(options, reference, query, T_reference_query);
+    if (candidate) candidates.push_back(*std::move(candidate));
   }
-  verification.verdict = Judge(options, verification);
-  return verification;
+  SortByScore(&candidates);
+  std::vector<Verification> verifications;
+  for (const Candidate& candidate : candidates) {
+    const bool is_new = std::all_of(
+        verifications.begin(), verifications.end(),
+        [&](const Verification& better) {
+          return IsDistinct(candidate.registration.T_reference_query,
+                            better.T_reference_query, middle);
+        });
+    if (!is_new) continue;
+    verifications.push_back(
+        Verify(options, reference, query, candidate, candidates, middle));
+  }
+  std::stable_sort(verifications.begin(), verifications.end(),
+                   [](const Verification& a, const Verification& b) {
+                     return a.score > b.score;
+                   });
+  return verifications;
 }
 
 std::vector<Rigid2> FindSelfSimilarPoses(

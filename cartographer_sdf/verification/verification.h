@@ -101,9 +101,20 @@ struct Verification {
   Eigen::Matrix3d information;
   double score;  // log-odds of being right
   Agreement agreement;
-  // To the best distinct pose; in [0, kMaxMargin].
+  // To the best distinct pose, at most kMaxMargin; negative where that is the
+  // better one.
   double margin;
+  // Distinct poses that score nearly as well, best first; at most
+  // kMaxNumRivals.
+  std::vector<Rigid2> rivals;
 };
+
+constexpr size_t kMaxNumRivals = 3;
+
+// The first test that fails, or accepted.
+[[nodiscard]] Verdict Judge(const VerificationOptions& options,
+                            const Agreement& agreement, double score,
+                            double margin);
 
 // None where no hypothesis is worth refining. Independent of the order of the
 // hypotheses. Rivals of the best pose are the other hypotheses and, where it is
@@ -113,6 +124,13 @@ struct Verification {
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query);
+
+// Each of the poses, refined, whatever it scores; of those that become nearly
+// the same the best. Best first. Margins are those to each other and to the
+// rivals as above.
+[[nodiscard]] std::vector<Verification> VerifyPoses(
+    const VerificationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const std::vector<Rigid2>& T_reference_query);
 
 // The poses among the hypotheses, refined, in which the submap resembles itself
 // and which are distinct from the identity and from each other; best first.

@@ -66,6 +66,25 @@ TEST(WriteScoreTermsTest, WritesWhatTheScoreIsMadeOf) {
   }
 }
 
+TEST(WriteNeighbourhoodTermsTest, LeavesOutWhatNobodyAskedAbout) {
+  const testing::TemporaryDirectory directory;
+  const Match alone = VerifiedMatch();
+  Match hopeless = VerifiedMatch();
+  hopeless.neighbourhood = NeighbourhoodEvidence{};
+  hopeless.verification->score = -6.;
+  Match asked = VerifiedMatch();
+  asked.neighbourhood = NeighbourhoodEvidence{};
+  asked.closure.score = 2.5;
+  ASSERT_TRUE(WriteNeighbourhoodTerms(directory.File("terms.csv"),
+                                      NeighbourhoodOptions(),
+                                      {alone, hopeless, asked})
+                  .ok());
+  EXPECT_EQ(directory.Read("terms.csv"),
+            "reference_trajectory,reference_index,query_trajectory,"
+            "query_index,score,pair_score,log_contradiction\n"
+            "0,3,1,2,2.5,4.5,0\n");
+}
+
 TEST(WriteAnswerLabelsTest, WritesOneRowPerAnswer) {
   const testing::TemporaryDirectory directory;
   AnswerLabel right;

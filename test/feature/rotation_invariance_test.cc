@@ -68,8 +68,7 @@ TEST(RotationInvarianceTest, ATurnedGridHasTheSameFeatures) {
   ASSERT_TRUE(original.has_value());
   for (int degrees = 0; degrees < 360; degrees += 10) {
     const double angle = degrees * M_PI / 180.;
-    ExpectRepeatable(*original, testing::TurnedGrid(grid, angle), angle,
-                     kTurnedGrid);
+    ExpectRepeatable(*original, TurnedGrid(grid, angle), angle, kTurnedGrid);
   }
 }
 
@@ -91,7 +90,7 @@ TEST(RotationInvarianceTest, RightAnglesLoseNothing) {
   for (int quarter = 1; quarter < 4; ++quarter) {
     const double angle = quarter * M_PI_2;
     const std::optional<DescribedGrid> turned =
-        DescribeGrid(testing::TurnedGrid(grid, angle));
+        DescribeGrid(TurnedGrid(grid, angle));
     ASSERT_TRUE(turned.has_value());
     Repeatability result;
     AddRepeatability(*original, *turned, angle, 0., 0.01, &result);

@@ -56,7 +56,7 @@ TEST_P(RealSubmapRotationTest, BringsBackTheFeatures) {
     for (const OccupancyGrid& grid : grids) {
       const std::optional<DescribedGrid> original = DescribeGrid(grid);
       const std::optional<DescribedGrid> turned =
-          DescribeGrid(testing::TurnedGrid(grid, angle));
+          DescribeGrid(TurnedGrid(grid, angle));
       ASSERT_TRUE(original.has_value() && turned.has_value());
       AddRepeatability(*original, *turned, angle, kBorderCells, kToleranceCells,
                        &result);

@@ -98,7 +98,7 @@ TEST(LidarTest, ScanIsInTheRobotFrame) {
   const FloorPlan room = RectangularRoom();
   const Rigid2 T_world_robot(3., 2.5, 2.);
   RandomNumbers random(42);
-  const Scan scan = TakeScan(room, T_world_robot, Noiseless(), &random);
+  const Scan scan = TakeScan(room, {}, T_world_robot, Noiseless(), &random);
   ASSERT_EQ(scan.returns.size(), 360u);
   EXPECT_TRUE(scan.empty_beams.empty());
   double smallest = 10., largest = -10.;
@@ -122,7 +122,7 @@ TEST(LidarTest, EmptyBeamsAreUnitDirections) {
   LidarOptions options = Noiseless();
   options.max_range = 2.5;
   RandomNumbers random(42);
-  const Scan scan = TakeScan(room, Rigid2(4., 3., 0.), options, &random);
+  const Scan scan = TakeScan(room, {}, Rigid2(4., 3., 0.), options, &random);
   EXPECT_EQ(scan.returns.size() + scan.empty_beams.size(), 360u);
   // Walls above and below are 2 m away: within reach up to acos(2 / 2.5) off.
   const double visible = 4. * std::acos(0.8);
@@ -143,7 +143,7 @@ TEST(LidarTest, NoiseAndDropOutsHaveTheirSize) {
   options.drop_outs = 0.05;
   RandomNumbers random(42);
   const Rigid2 T_world_robot(4., 3., 0.3);
-  const Scan scan = TakeScan(room, T_world_robot, options, &random);
+  const Scan scan = TakeScan(room, {}, T_world_robot, options, &random);
   // Four standard deviations of the binomial distribution.
   EXPECT_NEAR(static_cast<double>(scan.returns.size()), 9500.,
               4. * std::sqrt(10000. * 0.05 * 0.95));
@@ -161,6 +161,70 @@ TEST(LidarTest, NoiseAndDropOutsHaveTheirSize) {
   EXPECT_NEAR(std::sqrt(sum_squared / n), 0.02, 4. * 0.02 / std::sqrt(2. * n));
 }
 
+// A pane 1 m before the right wall.
+FloorPlan RoomWithPane() {
+  FloorPlan plan = RectangularRoom();
+  FillRectangle({6., 3.}, {0.1, 4.}, 0., true, &plan);
+  return plan;
+}
+
+TEST(LidarTest, GlassReturnsSomeBeamsAndShowsWhatIsBehind) {
+  FloorPlan plan = RoomWithPane();
+  EXPECT_NEAR(*CastRay(plan, {3., 3.}, {1., 0.}, 20.), 2.95, kRounding);
+  MakeGlass({6., 3.}, {0.2, 4.}, 0., &plan);
+  EXPECT_EQ(plan.glass.count(), 2 * 80);
+  EXPECT_NEAR(*CastRay(plan, {3., 3.}, {1., 0.}, 20.), 2.95, kRounding);
+  EXPECT_NEAR(*CastRay(plan, {3., 3.}, {1., 0.}, 20., true), 4., kRounding);
+  LidarOptions options = Noiseless();
+  options.field_of_view = 0.01;
+  options.num_beams = 10000;
+  options.glass_echo = 0.3;
+  RandomNumbers random(42);
+  const Scan scan = TakeScan(plan, {}, Rigid2(3., 3., 0.), options, &random);
+  ASSERT_EQ(scan.returns.size(), 10000u);
+  double on_glass = 0.;
+  for (const Eigen::Vector2f& point : scan.returns)
+    on_glass += point.x() < 3.5f;
+  // Four standard deviations.
+  EXPECT_NEAR(on_glass, 3000., 4. * std::sqrt(10000. * 0.3 * 0.7));
+}
+
+TEST(LidarTest, DoesNotSeeTheUnseen) {
+  FloorPlan plan = RoomWithPane();
+  MakeUnseen({6., 3.}, {0.2, 4.}, 0., true, &plan);
+  EXPECT_NEAR(*CastRay(plan, {3., 3.}, {1., 0.}, 20.), 4., kRounding);
+  MakeUnseen({6., 3.}, {0.2, 0.1}, 0., false, &plan);
+  EXPECT_NEAR(*CastRay(plan, {3., 3.}, {1., 0.}, 20.), 2.95, kRounding);
+  EXPECT_NEAR(*CastRay(plan, {3., 3.5}, {1., 0.}, 20.), 4., kRounding);
+}
+
+TEST(LidarTest, PeopleStandBeforeWalls) {
+  const FloorPlan room = RectangularRoom();
+  const std::vector<Person> people = {
+      {{4.5, 3.}, 0.2}, {{6., 3.}, 0.2}, {{3., 20.}, 0.2}};
+  LidarOptions options = Noiseless();
+  options.num_beams = 361;
+  options.field_of_view = 2. * M_PI;
+  RandomNumbers random(42);
+  // Half a beam off, so that the middle one points ahead.
+  const Scan scan =
+      TakeScan(room, people, Rigid2(3., 3., 0.), options, &random);
+  ASSERT_EQ(scan.returns.size(), 361u);
+  int on_person = 0;
+  for (const Eigen::Vector2f& point : scan.returns) {
+    const Vector2d p = point.cast<double>();
+    const double to_first = (p - Vector2d(1.5, 0.)).norm();
+    if (std::abs(to_first - 0.2) < 1e-5) {
+      ++on_person;
+      EXPECT_LT(p.x(), 1.5);  // The near side.
+    } else {
+      EXPECT_NEAR(p.norm(), RangeInRoom({3., 3.}, p.normalized()), 1e-5);
+    }
+  }
+  // The disc spans 2 asin(0.2 / 1.5) and hides the one behind it.
+  EXPECT_NEAR(on_person, 361. * std::asin(0.2 / 1.5) / M_PI, 1.);
+}
+
 TEST(LidarTest, ValidatesOptions) {
   EXPECT_EQ(Validate(LidarOptions{}), "");
   LidarOptions options;
@@ -168,7 +232,8 @@ TEST(LidarTest, ValidatesOptions) {
   EXPECT_NE(Validate(options), "");
   for (double LidarOptions::*const field :
        {&LidarOptions::field_of_view, &LidarOptions::max_range,
-        &LidarOptions::range_noise, &LidarOptions::drop_outs}) {
+        &LidarOptions::range_noise, &LidarOptions::drop_outs,
+        &LidarOptions::glass_echo}) {
     options = LidarOptions{};
     options.*field = -1.;
     EXPECT_NE(Validate(options), "");

@@ -59,6 +59,35 @@ TEST(OfficeTest, SameSeedSameBuildingOtherSeedOther) {
             plan.occupied.count() / 4);
 }
 
+TEST(OfficeTest, GlassAndOpenTablesStopRobotsAsBefore) {
+  const FloorPlan plain = MakeOffice({}, 42);
+  EXPECT_EQ(plain.glass.size(), 0);
+  EXPECT_EQ(plain.unseen.size(), 0);
+  OfficeOptions options;
+  options.glass_fronts = 1.;
+  options.open_tables = 1.;
+  const FloorPlan plan = MakeOffice(options, 42);
+  EXPECT_TRUE((plan.occupied == plain.occupied).all());
+  EXPECT_TRUE((!plan.glass || plan.occupied).all());
+  EXPECT_TRUE((!plan.unseen || plan.occupied).all());
+  // Some 92 m of walls outside and 44 m inside of the corridor, less 25 doors
+  // of 1.1 m, 0.15 m thick.
+  const double cell = options.resolution * options.resolution;
+  EXPECT_NEAR(static_cast<double>(plan.glass.count()) * cell, 16.3, 3.);
+  EXPECT_GT(static_cast<double>(plan.unseen.count()) * cell, 10.);
+  options.glass_fronts = 0.5;
+  const double half =
+      static_cast<double>(MakeOffice(options, 42).glass.count());
+  const double all = static_cast<double>(plan.glass.count());
+  EXPECT_GT(half, 0.25 * all);
+  EXPECT_LT(half, 0.75 * all);
+  options.glass_fronts = 1.5;
+  EXPECT_NE(Validate(options), "");
+  options = OfficeOptions{};
+  options.open_tables = -0.1;
+  EXPECT_NE(Validate(options), "");
+}
+
 TEST(OfficeTest, EachOptionIsReadAndValidated) {
   EXPECT_EQ(Validate(OfficeOptions{}), "");
   const FloorPlan plan = MakeOffice({}, 42);

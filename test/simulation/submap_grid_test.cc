@@ -109,7 +109,7 @@ TEST(SubmapGridTest, WallsOfARoomLieWithinACellOfTheTruth) {
   for (int k = 0; k != 30; ++k) {
     const Rigid2 T_submap_robot(0.05 * k - 1., 0.02 * k, 0.3 * k);
     scans.push_back(
-        TakeScan(room, T_world_submap * T_submap_robot, lidar, &random));
+        TakeScan(room, {}, T_world_submap * T_submap_robot, lidar, &random));
     posed.push_back({T_submap_robot, &scans.back()});
   }
   const OccupancyGrid grid = BuildSubmapGrid(posed, {});

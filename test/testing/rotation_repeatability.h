@@ -20,44 +20,9 @@
 #include "cartographer_sdf/field/distance_field.h"
 #include "cartographer_sdf/field/distance_transform.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/turned_grid.h"
 
 namespace cartographer_sdf::testing {
-
-// The content of a grid turned about the submap's origin, in cells that keep
-// their direction: each takes over the cell of the source that holds its
-// centre (nearest sampling, probability and knowledge alike).
-inline OccupancyGrid TurnedGrid(const OccupancyGrid& source,
-                                const double angle) {
-  const Rigid2 R_new_old(0., 0., angle);
-  const Rigid2 T_grid_submap = source.geometry.T_submap_grid.Inverse();
-  Eigen::Array2d low = Eigen::Array2d::Constant(1e9), high = -low;
-  for (const double x : {0., 1.}) {
-    for (const double y : {0., 1.}) {
-      const Eigen::Vector2d corner =
-          source.geometry.resolution *
-          (Eigen::Array2d(x, y) * source.geometry.size.cast<double>()).matrix();
-      const Eigen::Vector2d turned =
-          T_grid_submap *
-          (R_new_old * (source.geometry.T_submap_grid * corner));
-      low = low.min(turned.array());
-      high = high.max(turned.array());
-    }
-  }
-  CellGeometry geometry = source.geometry;
-  geometry.size = ((high - low) / geometry.resolution).ceil().cast<int>();
-  geometry.T_submap_grid = geometry.T_submap_grid * Rigid2(low.matrix(), 0.);
-  OccupancyGrid turned = UnknownGrid(geometry);
-  for (int j = 0; j < geometry.size.y(); ++j) {
-    for (int i = 0; i < geometry.size.x(); ++i) {
-      const Eigen::Array2i cell = source.geometry.CellAt(
-          R_new_old.Inverse() * geometry.CellCentre({i, j}));
-      if (!source.geometry.Contains(cell)) continue;
-      turned.known(i, j) = source.known(cell.x(), cell.y());
-      turned.probability(i, j) = source.probability(cell.x(), cell.y());
-    }
-  }
-  return turned;
-}
 
 struct DescribedGrid {
   DistanceField field;

@@ -247,7 +247,8 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
       EXPECT_EQ(result.exit_code, 0) << result.error;
       return *ReadMatches(File(output));
     };
-    // A threshold that lets wrong ones through.
+    // A threshold that lets wrong ones through, and nobody who tells them
+    // apart.
     directory_->Write("lax.lua",
                       "include \"sdf_global_constraints.lua\"\n"
                       "local v = SDF_GLOBAL_CONSTRAINTS.loop_closing.match."
@@ -257,7 +258,7 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
                       "return SDF_GLOBAL_CONSTRAINTS");
     const std::vector<std::string> lax = {
         "--configuration_directory", directory_->path(),
-        "--configuration_basename", "lax.lua"};
+        "--configuration_basename", "lax.lua", "--alone"};
     const std::vector<MatchRow> alone = match("alone.csv", lax);
     std::vector<std::string> agree = lax;
     agree.insert(agree.end(), {"--agree", "--terms", File("terms.csv")});
@@ -284,7 +285,10 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
               static_cast<int>(alone.size()) + 1);
   }
   for (const std::vector<std::string>& flags :
-       {std::vector<std::string>{"--agree"}, {"--terms", File("t.csv")}}) {
+       {std::vector<std::string>{"--agree"},
+        {"--alone"},
+        {"--terms", File("t.csv")},
+        {"--neighbour_terms", File("t.csv")}}) {
     std::vector<std::string> arguments = {
         "match",    "--input",       File("open.pbstream"),
         "--output", File("not.csv"), "--method",
@@ -292,7 +296,7 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
     arguments.insert(arguments.end(), flags.begin(), flags.end());
     const ProgramResult result = RunTestProgram(arguments);
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.error, HasSubstr("need method sdf"));
+    EXPECT_THAT(result.error, HasSubstr("method sdf"));
   }
 }
 

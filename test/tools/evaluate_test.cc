@@ -123,12 +123,60 @@ TEST_F(EvaluateTest, ScoresMatches) {
                     HasSubstr("matches,recall_p1,0.25\n")));
 }
 
+// Seen by itself alone, from which no pose can come, a pair still counts.
+TEST_F(EvaluateTest, DrawsRandomPairs) {
+  Truth truth;
+  for (const int index : {0, 1}) {
+    truth.T_world_submap[{SmallMap::kTrajectory, index}] =
+        SmallMap::LocalSubmapPose(index);
+  }
+  ASSERT_TRUE(WriteTruth(truth_, truth).ok());
+  const auto run = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "--truth", truth_,  "--random_pairs",
+        "10",      "--csv", directory_.File("numbers.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Run(arguments);
+  };
+  // Neighbours are no pairs, unless asked for.
+  const ProgramResult none = run({});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.error, HasSubstr("have no pair of submaps in common"));
+  const std::string curves = directory_.File("curves.csv");
+  const ProgramResult one =
+      run({"--min_index_gap", "1", "--curves", curves, "--plot",
+           directory_.File("plot.svg"), "--max_clearances", "0.5"});
+  EXPECT_EQ(one.exit_code, 0) << one.error;
+  EXPECT_THAT(directory_.Read("numbers.csv"),
+              AllOf(HasSubstr("paper overlap>=0.5,pairs,1\n"),
+                    HasSubstr("paper 0.5 m overlap>=0.1,positives,1\n"),
+                    HasSubstr("shape_context overlap>=0.7,pairs,1\n"),
+                    HasSubstr("sdf overlap>=0.3,recall_p1,")));
+  EXPECT_THAT(directory_.Read("curves.csv"), HasSubstr("series,threshold,"));
+  EXPECT_THAT(directory_.Read("plot.svg"), HasSubstr("shape_context"));
+  const ProgramResult unknown =
+      run({"--min_index_gap", "1", "--methods", "magic"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.error, HasSubstr("it is magic"));
+}
+
 TEST_F(EvaluateTest, RefusesFlagsThatDoNotGoTogether) {
   ExpectFailure({}, 2, "needs --relations or --truth");
   ExpectFailure({"--relations", "x", "--matches", "y"}, 2,
                 "--matches needs --truth");
   ExpectFailure({"--truth", truth_, "--labels", "y"}, 2,
                 "--labels needs --matches");
+  ExpectFailure({"--truth", truth_, "--matches", "x,y", "--labels", "z"}, 2,
+                "a file for each");
+  ExpectFailure({"--relations", "x", "--random_pairs", "5"}, 2,
+                "--random_pairs needs --truth");
+  ExpectFailure({"--truth", truth_, "--random_pairs", "-5"}, 2,
+                "--random_pairs must be from 0");
+  ExpectFailure(
+      {"--truth", truth_, "--random_pairs", "5", "--min_overlaps", "0.5,x"}, 2,
+      "--min_overlaps must be numbers");
+  ExpectFailure({"--truth", truth_, "--plot", "p.svg"}, 2,
+                "need --matches or --random_pairs");
   ExpectFailure({"--truth", truth_, "--query", map_}, 2, "need each other");
   ExpectFailure({"--truth", truth_, "--query", map_, "--query_truth", truth_},
                 2, "--query needs --matches");

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/evaluation/random_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <random>
+#include <set>
+
+#include "cartographer_sdf/grid/turned_grid.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Uniform in [0, bound), to within 2^-32; the standard's distributions differ
+// between libraries.
+size_t Draw(std::mt19937_64* const engine, const size_t bound) {
+  CHECK_LT(bound, size_t{1} << 32);
+  return static_cast<size_t>((((*engine)() >> 32) * bound) >> 32);
+}
+
+double DrawRotation(std::mt19937_64* const engine) {
+  const double unit = std::ldexp(static_cast<double>((*engine)() >> 11), -53);
+  return M_PI - 2. * M_PI * unit;
+}
+
+}  // namespace
+
+std::vector<TurnedPair> DrawRandomPairs(const PairTruths& pairs,
+                                        const int max_num_pairs,
+                                        const int seed) {
+  CHECK_GE(max_num_pairs, 0);
+  std::mt19937_64 engine(static_cast<uint64_t>(seed));
+  std::vector<TurnedPair> drawn;
+  for (const auto& pair : pairs) {
+    drawn.push_back({pair.first.first, pair.first.second, 0.});
+  }
+  const size_t size =
+      std::min(drawn.size(), static_cast<size_t>(max_num_pairs));
+  for (size_t k = 0; k < size; ++k) {
+    std::swap(drawn[k], drawn[k + Draw(&engine, drawn.size() - k)]);
+    drawn[k].rotation = DrawRotation(&engine);
+  }
+  drawn.resize(size);
+  std::sort(
+      drawn.begin(), drawn.end(), [](const TurnedPair& a, const TurnedPair& b) {
+        return std::tie(a.reference, a.query) < std::tie(b.reference, b.query);
+      });
+  return drawn;
+}
+
+PlaceMaker MakeGridPlaces(const PlaceOptions& place_options,
+                          const MatchOptions& match_options,
+                          const std::map<SubmapId, OccupancyGrid>& grids) {
+  return
+      [place_options, match_options, &grids](
+          const SubmapId& id, const double rotation) -> std::optional<Place> {
+        const auto grid = grids.find(id);
+        if (grid == grids.end()) return std::nullopt;
+        std::optional<Place> place =
+            rotation == 0. ? DescribePlace(place_options, id, grid->second)
+                           : DescribePlace(place_options, id,
+                                           TurnedGrid(grid->second, rotation));
+        if (place && match_options.method == Method::kSdf) {
+          FindSelfSimilarities(match_options, &*place);
+        }
+        return place;
+      };
+}
+
+PlaceMaker MakeCloudPlaces(const CloudPlaceOptions& options,
+                           const std::map<SubmapId, SubmapCloud>& clouds) {
+  return [options, &clouds](const SubmapId& id,
+                            const double rotation) -> std::optional<Place> {
+    const auto cloud = clouds.find(id);
+    if (cloud == clouds.end()) return std::nullopt;
+    const Rigid2 T_turned_submap(0., 0., rotation);
+    SubmapCloud turned;
+    for (const Eigen::Vector2d& p_submap : cloud->second) {
+      turned.emplace_back(T_turned_submap * p_submap);
+    }
+    Place place;
+    place.id = id;
+    place.features = DescribeByShapeContexts(options, turned);
+    return place;
+  };
+}
+
+FeatureSet FeaturesNearWalls(const FeatureSet& features,
+                             const double max_clearance) {
+  FeatureSet near;
+  std::vector<Eigen::Index> columns;
+  for (size_t k = 0; k < features.features.size(); ++k) {
+    if (std::abs(features.features[k].keypoint.clearance) > max_clearance) {
+      continue;
+    }
+    near.features.push_back(features.features[k]);
+    columns.push_back(static_cast<Eigen::Index>(k));
+  }
+  near.descriptors.resize(features.descriptors.rows(),
+                          static_cast<Eigen::Index>(columns.size()));
+  for (size_t k = 0; k < columns.size(); ++k) {
+    near.descriptors.col(static_cast<Eigen::Index>(k)) =
+        features.descriptors.col(columns[k]);
+  }
+  return near;
+}
+
+std::vector<std::vector<MatchRow>> MatchTurnedPairs(
+    const MatchOptions& options, const PlaceMaker& make_place,
+    const std::vector<TurnedPair>& pairs,
+    const std::vector<double>& max_clearances, const Executor& executor,
+    const ProgressCallback& on_progress) {
+  std::set<SubmapId> references;
+  for (const TurnedPair& pair : pairs) references.insert(pair.reference);
+  const std::vector<SubmapId> ids(references.begin(), references.end());
+  std::vector<std::optional<Place>> described(ids.size());
+  executor(ids.size(),
+           [&](const size_t k) { described[k] = make_place(ids[k], 0.); });
+  const size_t num_variants = 1 + max_clearances.size();
+  std::vector<std::vector<std::optional<MatchRow>>> found(
+      num_variants, std::vector<std::optional<MatchRow>>(pairs.size()));
+  std::mutex progress_mutex;
+  size_t num_done = 0;
+  const auto match_pair = [&](const size_t k) {
+    const TurnedPair& pair = pairs[k];
+    const std::optional<Place>& reference =
+        described[std::lower_bound(ids.begin(), ids.end(), pair.reference) -
+                  ids.begin()];
+    std::optional<Place> query = make_place(pair.query, pair.rotation);
+    if (!reference || !query) return;
+    const Rigid2 T_turned_query(0., 0., pair.rotation);
+    const auto match = [&](const Place& a, const Place& b, const size_t v) {
+      const std::optional<Match> result = MatchPlaces(options, a, b);
+      if (!result) return;
+      MatchRow row;
+      row.reference = pair.reference;
+      row.query = pair.query;
+      row.accepted = result->verdict == Verdict::kAccepted;
+      row.score = result->closure.score;
+      row.T_reference_query =
+          result->closure.T_reference_query * T_turned_query;
+      row.verdict = VerdictName(result->verdict);
+      row.inliers = result->closure.evidence.inliers;
+      found[v][k] = row;
+    };
+    match(*reference, *query, 0);
+    if (max_clearances.empty()) return;
+    Place near_reference;
+    Place near_query;
+    near_reference.id = reference->id;
+    near_query.id = query->id;
+    if (options.method != Method::kPaper) {
+      near_reference.surface = reference->surface;
+      near_query.surface = std::move(query->surface);
+    }
+    for (size_t v = 1; v < num_variants; ++v) {
+      near_reference.features =
+          FeaturesNearWalls(reference->features, max_clearances[v - 1]);
+      near_query.features =
+          FeaturesNearWalls(query->features, max_clearances[v - 1]);
+      match(near_reference, near_query, v);
+    }
+  };
+  executor(pairs.size(), [&](const size_t k) {
+    match_pair(k);
+    if (!on_progress) return;
+    const std::lock_guard<std::mutex> lock(progress_mutex);
+    on_progress(static_cast<double>(++num_done) /
+                static_cast<double>(pairs.size()));
+  });
+  std::vector<std::vector<MatchRow>> rows(num_variants);
+  for (size_t v = 0; v < num_variants; ++v) {
+    for (std::optional<MatchRow>& row : found[v]) {
+      if (row) rows[v].push_back(*std::move(row));
+    }
+  }
+  return rows;
+}
+
+PrecisionRecallCurve JudgePairs(const PairTruths& truths,
+                                const std::vector<TurnedPair>& pairs,
+                                const std::vector<AnswerLabel>& labels,
+                                const double min_overlap,
+                                const AnswerJudgement judgement) {
+  int num_positives = 0;
+  for (const TurnedPair& pair : pairs) {
+    num_positives +=
+        truths.at({pair.reference, pair.query}).overlap >= min_overlap;
+  }
+  std::vector<JudgedAnswer> answers;
+  for (const AnswerLabel& label : labels) {
+    const bool is_match = label.overlap >= min_overlap;
+    if (judgement == AnswerJudgement::kByPair) {
+      answers.push_back({label.score, is_match});
+    } else if (label.verdict == AnswerVerdict::kWrong) {
+      answers.push_back({label.score, false});
+    } else if (is_match && label.verdict == AnswerVerdict::kRight) {
+      answers.push_back({label.score, true});
+    }
+  }
+  return MakePrecisionRecallCurve(std::move(answers), num_positives);
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Submaps as point clouds, which the comparison method needs ([Millane2019],
+// Sec. V-A): back-projected scans, aggregated by the optimised trajectory.
+
+#ifndef CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_
+#define CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_
+
+#include <Eigen/Core>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+
+namespace cartographer_sdf {
+
+struct SubmapCloudOptions {
+  // Scans that are taken of each submap, evenly over its time ([Millane2019]:
+  // about 30).
+  int max_num_scans = 30;
+  // Points in one square of this side become their mean [m], so that what was
+  // seen from near, or by many scans, does not weigh more.
+  double voxel_size_meters = 0.05;
+};
+[[nodiscard]] std::string Validate(const SubmapCloudOptions& options);
+
+using SubmapCloud = std::vector<Eigen::Vector2d>;  // submap frame [m]
+
+// Means of the points in each square of a raster, in the order of the raster.
+[[nodiscard]] SubmapCloud DownsampleCloud(const SubmapCloud& cloud,
+                                          double voxel_size);
+
+// Of each submap of the pose graph that scans were inserted into. Nodes without
+// a point cloud are passed over; clouds in the file are what the host matched:
+// undistorted, and gravity-aligned. Fails as ReadPointClouds does.
+[[nodiscard]] absl::StatusOr<std::map<SubmapId, SubmapCloud>> ReadSubmapClouds(
+    const SubmapCloudOptions& options, const std::string& path,
+    const PoseGraph& pose_graph, const ProgressCallback& on_progress = {});
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/simulation/people.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "cartographer_sdf/simulation/drive.h"
+#include "cartographer_sdf/simulation/path_planner.h"
+#include "cartographer_sdf/simulation/random_numbers.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Of those who walk [s].
+constexpr double kTimeStep = 0.1;
+// Between a person's centre and walls [m].
+constexpr double kClearance = 0.3;
+
+const Eigen::Vector2d& AtOrLast(const std::vector<Eigen::Vector2d>& places,
+                                const double index) {
+  CHECK(!places.empty());
+  return places[std::min(static_cast<size_t>(std::max(0., index)),
+                         places.size() - 1)];
+}
+
+}  // namespace
+
+std::string Validate(const PeopleOptions& options) {
+  if (options.num_walking < 0 || options.num_walking > 100 ||
+      options.num_standing < 0 || options.num_standing > 1000) {
+    return "there can be 0 to 100 people walking and 0 to 1000 standing";
+  }
+  if (!(options.radius > 0. && options.radius <= kClearance)) {
+    return "radius must lie between 0 m and 0.3 m";
+  }
+  if (!(options.walking_speed > 0. && options.walking_speed <= 10.)) {
+    return "walking_speed must lie between 0 m/s and 10 m/s";
+  }
+  if (!(options.standing_time >= 1. && options.standing_time <= 1e6)) {
+    return "standing_time must lie between 1 s and 1e6 s";
+  }
+  return "";
+}
+
+std::vector<Person> People::At(const double seconds,
+                               const Rigid2& T_world_robot) const {
+  std::vector<Person> people;
+  const auto add = [&](const Eigen::Vector2d& position) {
+    if ((position - T_world_robot.translation()).norm() > kRobotSpace) {
+      people.push_back({position, options_.radius});
+    }
+  };
+  for (const auto& walk : walks_) add(AtOrLast(walk, seconds / kTimeStep));
+  for (size_t k = 0; k != stands_.size(); ++k) {
+    add(AtOrLast(stands_[k], seconds / options_.standing_time + shifts_[k]));
+  }
+  return people;
+}
+
+absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
+                                   const PeopleOptions& options,
+                                   const double duration, const uint32_t seed) {
+  CHECK_EQ(Validate(options), "");
+  People people;
+  people.options_ = options;
+  RandomNumbers random(seed, RandomStream::kPeople);
+  for (int k = 0; k != options.num_walking; ++k) {
+    DriveOptions walk;
+    walk.clearance = kClearance;
+    walk.speed = options.walking_speed;
+    // Turns on the spot take time that is not walked.
+    walk.length = std::max(1., options.walking_speed * duration);
+    walk.turn_rate = 3.;
+    walk.time_step = kTimeStep;
+    const absl::StatusOr<std::vector<DrivenPose>> driven =
+        Drive(plan, walk, static_cast<uint32_t>(random.Index(1 << 30)));
+    if (!driven.ok()) return driven.status();
+    std::vector<Eigen::Vector2d> places;
+    for (const DrivenPose& pose : *driven) {
+      places.push_back(pose.T_world_robot.translation());
+    }
+    people.walks_.push_back(std::move(places));
+  }
+  if (options.num_standing == 0) return people;
+  const NavigationGrid grid = MakeNavigationGrid(plan, kClearance);
+  std::vector<Eigen::Vector2d> cells;
+  for (int j = 0; j != grid.geometry.size.y(); ++j) {
+    for (int i = 0; i != grid.geometry.size.x(); ++i) {
+      if (grid.reachable(i, j)) {
+        cells.push_back(grid.geometry.CellCentre({i, j}));
+      }
+    }
+  }
+  if (cells.empty()) {
+    return absl::InvalidArgumentError("the floor plan has no room for people");
+  }
+  const int num_stands =
+      static_cast<int>(std::ceil(duration / options.standing_time)) + 1;
+  for (int k = 0; k != options.num_standing; ++k) {
+    people.shifts_.push_back(random.Uniform(0., 1.));
+    std::vector<Eigen::Vector2d> places;
+    for (int n = 0; n != num_stands; ++n) {
+      places.push_back(cells[random.Index(static_cast<int>(cells.size()))]);
+    }
+    people.stands_.push_back(std::move(places));
+  }
+  return people;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// `evaluate --random_pairs`: the paper's protocol, with its comparison method
+// and its ablation ([Millane2019], Sec. V-A and V-B).
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_EVALUATE_RANDOM_PAIRS_H_
+#define CARTOGRAPHER_SDF_TOOLS_EVALUATE_RANDOM_PAIRS_H_
+
+#include <vector>
+
+#include "absl/status/status.h"
+#include "cartographer_sdf/evaluation/precision_recall.h"
+#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/tools/measurement.h"
+
+namespace cartographer_sdf {
+
+// Whether the flags ask for it; a UsageError where they make no sense.
+[[nodiscard]] bool WantsRandomPairs();
+[[nodiscard]] absl::Status CheckRandomPairFlags();
+
+// Adds measurements, and curves by the paper's judgement.
+[[nodiscard]] absl::Status MeasureRandomPairs(
+    const Truth& truth, std::vector<Measurement>* measurements,
+    std::vector<NamedCurve>* curves);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_EVALUATE_RANDOM_PAIRS_H_

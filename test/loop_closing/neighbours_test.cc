@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/loop_closing/neighbours.h"
+
+#include <cmath>
+#include <vector>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/two_visits.h"
+
+namespace cartographer_sdf {
+namespace {
+
+using testing::IsPoseNear;
+using testing::TwoVisits;
+
+constexpr double kDegree = M_PI / 180.;
+
+void Forwards(const size_t n, const std::function<void(size_t)>& task) {
+  for (size_t k = 0; k != n; ++k) task(k);
+}
+void Backwards(const size_t n, const std::function<void(size_t)>& task) {
+  for (size_t k = n; k != 0; --k) task(k - 1);
+}
+
+// The match of the west rooms alone, as if the features of the east rooms had
+// failed.
+std::vector<Match> WestMatch(const TwoVisits& visits) {
+  const auto& places = *visits.Places().places;
+  std::optional<Match> match =
+      MatchPlaces(MatchOptions(), places.at(TwoVisits::kWestFirst),
+                  places.at(TwoVisits::kWestAgain));
+  CHECK(match.has_value());
+  return {*std::move(match)};
+}
+
+std::vector<Match> Judged(const TwoVisits& visits, std::vector<Match> matches,
+                          const Executor& executor = &Forwards) {
+  JudgeByNeighbours(NeighbourhoodOptions(), MatchOptions(), visits.Places(),
+                    visits.Places(), 3, executor, {}, &matches);
+  return matches;
+}
+
+const Match* Find(const std::vector<Match>& matches, const SubmapId& reference,
+                  const SubmapId& query) {
+  for (const Match& match : matches) {
+    if (match.closure.reference == reference && match.closure.query == query) {
+      return &match;
+    }
+  }
+  return nullptr;
+}
+
+TEST(JudgeByNeighboursTest, FindsWhatOnlyNeighboursPropose) {
+  const TwoVisits visits(Rigid2(0.1, -0.1, 1.5 * kDegree));
+  const std::vector<Match> judged = Judged(visits, WestMatch(visits));
+  const Match* const east =
+      Find(judged, TwoVisits::kEastFirst, TwoVisits::kEastAgain);
+  ASSERT_NE(east, nullptr);
+  EXPECT_STREQ(VerdictName(east->verdict), "accepted");
+  EXPECT_THAT(
+      east->closure.T_reference_query,
+      IsPoseNear(visits.T_world_submap(TwoVisits::kEastFirst).Inverse() *
+                     visits.T_world_submap(TwoVisits::kEastAgain),
+                 0.05, 0.5 * kDegree));
+  EXPECT_GT(east->closure.evidence.inliers, 0);
+  const Match* const west =
+      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+  ASSERT_NE(west, nullptr);
+  ASSERT_TRUE(west->neighbourhood.has_value());
+  EXPECT_EQ(west->closure.score, NeighbourhoodScore(NeighbourhoodOptions(),
+                                                    west->verification->score,
+                                                    *west->neighbourhood));
+}
+
+TEST(JudgeByNeighboursTest, NeighboursMakeTheRightMatchMoreCertain) {
+  const TwoVisits visits;
+  const Match match = WestMatch(visits).front();
+  const std::vector<Match> judged = Judged(visits, {match});
+  const Match* const west =
+      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+  ASSERT_NE(west, nullptr);
+  EXPECT_GT(west->closure.score,
+            NeighbourhoodScore(NeighbourhoodOptions(),
+                               match.verification->score, {}));
+}
+
+TEST(JudgeByNeighboursTest, RefusesAMatchThatNeighboursContradict) {
+  const TwoVisits visits;
+  const std::vector<Match> right = WestMatch(visits);
+  std::vector<Match> wrong = right;
+  // The rooms agree just as well, but local SLAM says that the east room was
+  // seen elsewhere: as between twins.
+  const TwoVisits elsewhere(Rigid2(-2.5, 1., 0.4));
+  std::vector<Match> judged = Judged(elsewhere, wrong);
+  const Match* const twin =
+      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+  ASSERT_NE(twin, nullptr);
+  judged = Judged(visits, right);
+  const Match* const west =
+      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+  ASSERT_NE(west, nullptr);
+  EXPECT_LT(twin->closure.score, west->closure.score - 1.);
+}
+
+TEST(JudgeByNeighboursTest, DoesNotDependOnTheOrderOfWork) {
+  const TwoVisits visits;
+  const std::vector<Match> one = Judged(visits, WestMatch(visits), &Forwards);
+  const std::vector<Match> other =
+      Judged(visits, WestMatch(visits), &Backwards);
+  ASSERT_EQ(one.size(), other.size());
+  ASSERT_GE(one.size(), 2u);
+  for (size_t k = 0; k != one.size(); ++k) {
+    EXPECT_EQ(one[k].closure.reference, other[k].closure.reference);
+    EXPECT_EQ(one[k].closure.query, other[k].closure.query);
+    EXPECT_EQ(one[k].closure.score, other[k].closure.score);
+    if (k > 0) {
+      EXPECT_LT(std::make_pair(one[k - 1].closure.reference,
+                               one[k - 1].closure.query),
+                std::make_pair(one[k].closure.reference, one[k].closure.query));
+    }
+  }
+}
+
+TEST(JudgeByNeighboursTest, NothingFromNothing) {
+  const TwoVisits visits;
+  EXPECT_TRUE(Judged(visits, {}).empty());
+}
+
+}  // namespace
+}  // namespace cartographer_sdf

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/recognition/neighbourhood.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/two_visits.h"
+
+namespace cartographer_sdf {
+namespace {
+
+using testing::IsPoseNear;
+using testing::TwoVisits;
+
+constexpr double kDegree = M_PI / 180.;
+
+Neighbourhood Ask(const TwoVisits& visits, const Rigid2& T_reference_query,
+                  const NeighbourhoodOptions& options = {}) {
+  return AskNeighbours(options, VerificationOptions(), visits.Places(),
+                       visits.Places(), 3, TwoVisits::kWestFirst,
+                       TwoVisits::kWestAgain, T_reference_query);
+}
+
+TEST(NeighbourhoodTest, NeighboursOfTheRightPoseAgree) {
+  const TwoVisits visits;
+  const Neighbourhood right = Ask(visits, visits.T_west_first_west_again());
+  // Each with its own room, at the least.
+  EXPECT_GE(right.evidence.num_pairs, 1);
+  // Half of the room's walls, from both sides.
+  EXPECT_GT(right.evidence.wall_length, 15.);
+  EXPECT_LT(right.evidence.contradicting_length,
+            0.03 * right.evidence.wall_length);
+  EXPECT_LT(LogContradiction(NeighbourhoodOptions(), right.evidence), 0.);
+}
+
+TEST(NeighbourhoodTest, NeighboursOfAWrongPoseContradict) {
+  const TwoVisits visits;
+  const Rigid2 T_world_first = visits.T_world_submap(TwoVisits::kWestFirst);
+  const Rigid2 T_world_again = visits.T_world_submap(TwoVisits::kWestAgain);
+  // One door further.
+  const Rigid2 wrong =
+      T_world_first.Inverse() * Rigid2(2., 0.5, 0.) * T_world_again;
+  const NeighbourhoodEvidence evidence = Ask(visits, wrong).evidence;
+  EXPECT_GE(evidence.num_pairs, 1);
+  EXPECT_GT(
+      LogContradiction(NeighbourhoodOptions(), evidence),
+      LogContradiction(NeighbourhoodOptions(),
+                       Ask(visits, visits.T_west_first_west_again()).evidence) +
+          0.5);
+}
+
+TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
+  // Off by this once the other room is reached.
+  const Rigid2 drift(0.1, -0.1, 1.5 * kDegree);
+  const TwoVisits visits(drift);
+  const Neighbourhood neighbourhood =
+      Ask(visits, visits.T_west_first_west_again());
+  const Rigid2 expected =
+      visits.T_world_submap(TwoVisits::kEastFirst).Inverse() *
+      visits.T_world_submap(TwoVisits::kEastAgain);
+  bool is_proposed = false;
+  for (const PoseProposal& proposal : neighbourhood.proposals) {
+    if (proposal.reference != TwoVisits::kEastFirst ||
+        proposal.query != TwoVisits::kEastAgain) {
+      continue;
+    }
+    is_proposed = true;
+    // A cell, in the middle of the room.
+    EXPECT_THAT(proposal.T_reference_query,
+                IsPoseNear(expected, 0.05, 0.5 * kDegree));
+  }
+  EXPECT_TRUE(is_proposed);
+}
+
+TEST(NeighbourhoodTest, LeavesOutPairsThatShareScans) {
+  const TwoVisits visits;
+  const auto count = [&](const std::optional<int> min_index_gap) {
+    return AskNeighbours(NeighbourhoodOptions(), VerificationOptions(),
+                         visits.Places(), visits.Places(), min_index_gap,
+                         TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                         visits.T_west_first_west_again())
+        .evidence.num_pairs;
+  };
+  EXPECT_GT(count(3), 0);
+  // All of them are of one trajectory.
+  EXPECT_EQ(count(1000), 0);
+  EXPECT_GE(count(std::nullopt), count(3));
+}
+
+TEST(NeighbourhoodTest, NothingWithoutNeighbours) {
+  const TwoVisits visits;
+  NeighbourhoodOptions options;
+  options.num_steps = 0;
+  const Neighbourhood neighbourhood =
+      Ask(visits, visits.T_west_first_west_again(), options);
+  EXPECT_EQ(neighbourhood.evidence.num_pairs, 0);
+  EXPECT_TRUE(neighbourhood.proposals.empty());
+  EXPECT_EQ(LogContradiction(options, neighbourhood.evidence), 0.);
+}
+
+TEST(NeighbourhoodTest, IndicesMayBeAsLargeAsTheyLike) {
+  constexpr int kLast = std::numeric_limits<int>::max();
+  const TwoVisits visits;
+  std::map<SubmapId, Place> places;
+  std::map<SubmapId, OdometryPose> odometry;
+  for (const SubmapId& id : {SubmapId{0, 0}, SubmapId{0, kLast}}) {
+    Place place = visits.Places().places->at(TwoVisits::kWestFirst);
+    place.id = id;
+    places.emplace(id, place);
+    odometry[id] = {};
+  }
+  const PlacesAlongTrajectories map{&places, &odometry};
+  EXPECT_EQ(AskNeighbours(NeighbourhoodOptions(), VerificationOptions(), map,
+                          map, 3, {0, 0}, {0, kLast}, Rigid2())
+                .evidence.num_pairs,
+            0);
+}
+
+TEST(LogContradictionTest, IsMeasuredAgainstThePrior) {
+  NeighbourhoodOptions options;
+  options.prior_wall_length_meters = 50.;
+  options.prior_contradiction_ratio = 0.05;
+  // (0.01 + 2.5 / 100) / 0.06 and (0.01 + 12.5 / 100) / 0.06.
+  EXPECT_NEAR(LogContradiction(options, {4, 50., 0.}), std::log(0.035 / 0.06),
+              1e-12);
+  EXPECT_NEAR(LogContradiction(options, {4, 50., 10.}), std::log(0.135 / 0.06),
+              1e-12);
+  EXPECT_EQ(LogContradiction(options, {}), 0.);
+}
+
+TEST(NeighbourhoodScoreTest, IsLinearInItsTerms) {
+  NeighbourhoodOptions options;
+  options.weights = {0.5, -4., -1.};
+  const NeighbourhoodEvidence evidence{4, 50., 10.};
+  EXPECT_NEAR(NeighbourhoodScore(options, 6., evidence),
+              0.5 * 6. - 4. * LogContradiction(options, evidence) - 1., 1e-12);
+}
+
+TEST(NeighbourhoodOptionsTest, SaysWhatIsWrong) {
+  NeighbourhoodOptions options;
+  EXPECT_EQ(Validate(options), "");
+  options.index_step = 0;
+  EXPECT_THAT(Validate(options), ::testing::HasSubstr("index_step"));
+  options = {};
+  options.prior_contradiction_ratio = 0.;
+  EXPECT_THAT(Validate(options), ::testing::HasSubstr("prior"));
+  options = {};
+  options.weights.bias = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(Validate(options), ::testing::HasSubstr("bias"));
+}
+
+}  // namespace
+}  // namespace cartographer_sdf

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One drive that sees two rooms, and later both again.
+
+#ifndef TEST_TESTING_TWO_VISITS_H_
+#define TEST_TESTING_TWO_VISITS_H_
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "cartographer_sdf/recognition/neighbourhood.h"
+#include "cartographer_sdf/recognition/place.h"
+#include "test/testing/building.h"
+
+namespace cartographer_sdf::testing {
+
+class TwoVisits {
+ public:
+  static constexpr SubmapId kWestFirst{0, 0};
+  static constexpr SubmapId kEastFirst{0, 2};
+  static constexpr SubmapId kWestAgain{0, 10};
+  static constexpr SubmapId kEastAgain{0, 12};
+
+  // Local SLAM is exact but for the way between the rooms on the second visit,
+  // and lost in between the visits.
+  explicit TwoVisits(const Rigid2& T_room_driftedroom = {}) {
+    Add(kWestFirst, Rigid2(3., 2., 0.4), WestRoomViewpoints(), {});
+    Add(kEastFirst, Rigid2(12., 2., 1.4), EastRoomViewpoints(), {});
+    const Rigid2 lost(7., -40., 2.);
+    Add(kWestAgain, Rigid2(4., 3., -1.),
+        {{2.2, 2.4}, {4.4, 3.2}, {6.3, 4.2}, {2., 1.}}, lost);
+    Add(kEastAgain, Rigid2(13., 1., 0.2),
+        {{10.8, 2.4}, {11.2, -0.6}, {13.8, 1.}, {13.3, 3.2}}, lost);
+    OdometryPose& last = odometry_.at(kEastAgain);
+    last.T_local_submap = last.T_local_submap * T_room_driftedroom;
+  }
+
+  [[nodiscard]] PlacesAlongTrajectories Places() const {
+    return {&places_, &odometry_};
+  }
+  [[nodiscard]] const Rigid2& T_world_submap(const SubmapId& id) const {
+    return T_world_submap_.at(id);
+  }
+  [[nodiscard]] Rigid2 T_west_first_west_again() const {
+    return T_world_submap(kWestFirst).Inverse() * T_world_submap(kWestAgain);
+  }
+
+ private:
+  void Add(const SubmapId& id, const Rigid2& T_world_submap,
+           const Viewpoints& viewpoints, const Rigid2& T_local_world) {
+    std::optional<Place> place = DescribePlace(
+        PlaceOptions(), id, SeeFrom(TwoRooms(), T_world_submap, viewpoints));
+    CHECK(place.has_value());
+    places_.emplace(id, *std::move(place));
+    T_world_submap_[id] = T_world_submap;
+    odometry_[id] = {T_local_world * T_world_submap, 10. * id.index};
+  }
+
+  std::map<SubmapId, Place> places_;
+  std::map<SubmapId, OdometryPose> odometry_;
+  std::map<SubmapId, Rigid2> T_world_submap_;
+};
+
+}  // namespace cartographer_sdf::testing
+
+#endif  // TEST_TESTING_TWO_VISITS_H_
