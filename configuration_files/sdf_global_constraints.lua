@@ -226,10 +226,10 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- --neighbours on the same maps as score_weights.
       weights = {
         -- Of the pair's own score.
-        pair_score = 0.52,
+        pair_score = 0.515,
         -- Of the logarithm of the neighbours' contradicting part of wall.
-        log_contradiction = -5.62,
-        bias = -0.64,
+        log_contradiction = -5.57,
+        bias = -0.633,
       },
     },
     -- Whether closures of submaps that local SLAM tore, so that walls stand in
@@ -307,8 +307,8 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- the rest optimised again.
     withdrawal = {
       -- [m], [rad]
-      max_translation_error_meters = 0.5,
-      max_rotation_error = 0.1,
+      max_translation_error_meters = 0.3,
+      max_rotation_error = 0.052,
       max_num_rounds = 10,
     },
   },

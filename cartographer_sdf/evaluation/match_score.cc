@@ -68,10 +68,12 @@ PairTruth MakePairTruth(const Area& reference, const Area& query) {
   Area both;
   std::set_intersection(reference.begin(), reference.end(), query.begin(),
                         query.end(), std::back_inserter(both));
-  return PairTruth{
-      static_cast<double>(both.size()) /
-          static_cast<double>(std::min(reference.size(), query.size())),
-      Centre(both.empty() ? query : both)};
+  PairTruth pair;
+  pair.overlap = static_cast<double>(both.size()) /
+                 static_cast<double>(std::min(reference.size(), query.size()));
+  pair.centre_world = Centre(both.empty() ? query : both);
+  pair.is_positive = pair.overlap >= kPositiveOverlap;
+  return pair;
 }
 
 bool AreNeighbours(const SubmapId& a, const SubmapId& b,
@@ -103,7 +105,7 @@ AnswerLabel MakeLabel(const PairTruth& pair, const Rigid2& T_world_reference,
   label.query = match.query;
   label.score = match.score;
   label.overlap = pair.overlap;
-  label.to_positive = pair.overlap >= kPositiveOverlap;
+  label.to_positive = pair.is_positive;
   label.translation_error = (T_true_found * centre_query - centre_query).norm();
   label.rotation_error = std::abs(T_true_found.rotation());
   label.verdict = Judge(label.translation_error, label.rotation_error);
@@ -112,9 +114,8 @@ AnswerLabel MakeLabel(const PairTruth& pair, const Rigid2& T_world_reference,
 
 int CountPositives(const PairTruths& pairs) {
   return static_cast<int>(
-      std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) {
-        return pair.second.overlap >= kPositiveOverlap;
-      }));
+      std::count_if(pairs.begin(), pairs.end(),
+                    [](const auto& pair) { return pair.second.is_positive; }));
 }
 
 // `answers` by falling score.
@@ -204,6 +205,12 @@ PairTruths ComputePairTruths(
     }
   }
   return pairs;
+}
+
+void MarkPositives(const double min_overlap, PairTruths* const pairs) {
+  for (auto& [ids, pair] : *pairs) {
+    pair.is_positive = pair.overlap >= min_overlap;
+  }
 }
 
 const char* AnswerVerdictName(const AnswerVerdict verdict) {

@@ -40,11 +40,13 @@ struct PairTruth {
   double overlap = 0.;
   // Centre of the common area; of the query's where there is none [m].
   Eigen::Vector2d centre_world = Eigen::Vector2d::Zero();
+  // Whether the overlap is enough to ask for an answer.
+  bool is_positive = false;
 };
 using PairTruths = std::map<std::pair<SubmapId, SubmapId>, PairTruth>;
 
-// Pairs with a larger common area, as a fraction of the smaller one's, are
-// positive.
+// Pairs with a common area of this fraction of the smaller one's or more are
+// positive, unless MarkPositives says otherwise.
 constexpr double kPositiveOverlap = 0.5;
 // Submaps of one trajectory share scans below this difference of indices.
 constexpr int kLeastIndexGap = 3;
@@ -61,6 +63,9 @@ constexpr int kLeastIndexGap = 3;
     const Truth& reference_truth,
     const std::map<SubmapId, ObservedPoints>& query_submaps,
     const Truth& query_truth);
+
+// Makes those pairs positive whose overlap is `min_overlap` or more.
+void MarkPositives(double min_overlap, PairTruths* pairs);
 
 enum class AnswerVerdict { kRight, kNear, kWrong };
 // "right", "near", "wrong"

@@ -21,7 +21,7 @@ PlaceRecognitionScore ScorePlaceRecognition(
   std::set<SubmapId> queries, positive, matched, right;
   for (const auto& [ids, truth] : pairs) {
     queries.insert(ids.second);
-    if (truth.overlap >= kPositiveOverlap) positive.insert(ids.second);
+    if (truth.is_positive) positive.insert(ids.second);
   }
   // Labels name a pair of one map in the order of its ids, the table need not.
   std::set<IdPair> judged;

@@ -20,8 +20,8 @@ namespace cartographer_sdf {
 
 struct WithdrawalOptions {
   // Largest mean error of a closure's constraints [m], [rad].
-  double max_translation_error_meters = 0.5;
-  double max_rotation_error = 0.1;
+  double max_translation_error_meters = 0.3;
+  double max_rotation_error = 0.052;
   int max_num_rounds = 10;
 };
 [[nodiscard]] std::string Validate(const WithdrawalOptions& options);

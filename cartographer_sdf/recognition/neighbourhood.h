@@ -31,9 +31,9 @@ namespace cartographer_sdf {
 // in these. Learned by logistic regression, see scripts/learn_score.py and
 // docs/design.md.
 struct NeighbourhoodWeights {
-  double pair_score = 0.52;
-  double log_contradiction = -5.62;
-  double bias = -0.64;
+  double pair_score = 0.515;
+  double log_contradiction = -5.57;
+  double bias = -0.633;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodWeights& weights);
 

@@ -39,6 +39,9 @@ DEFINE_double(seconds_per_scan, 0.1,
 DEFINE_string(matches, "",
               "Matches to score, as `match` writes them; several files are "
               "separated by commas.");
+DEFINE_double(positive_overlap, 0.5,
+              "Pairs of submaps are positive whose common area is at least "
+              "this fraction of the smaller one's. Of --matches.");
 DEFINE_string(labels, "",
               "The file to write to what the truth says of each match; of "
               "several files of matches as many, separated by commas.");
@@ -196,10 +199,10 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
     if (!read_truth.ok()) return read_truth.status();
     query_truth = *std::move(read_truth);
   }
-  const PairTruths pairs =
-      query
-          ? ComputePairTruths(map.observed, truth, query->observed, query_truth)
-          : ComputePairTruths(map.observed, truth);
+  PairTruths pairs = query ? ComputePairTruths(map.observed, truth,
+                                               query->observed, query_truth)
+                           : ComputePairTruths(map.observed, truth);
+  MarkPositives(FLAGS_positive_overlap, &pairs);
   const std::vector<std::string> files = FilesOf(FLAGS_matches);
   std::vector<Measurement> accepted;
   const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
@@ -302,6 +305,9 @@ absl::Status CheckFlags() {
       !std::isfinite(FLAGS_seconds_per_scan)) {
     return UsageError("--seconds_per_scan must be positive");
   }
+  if (!(FLAGS_positive_overlap > 0. && FLAGS_positive_overlap <= 1.)) {
+    return UsageError("--positive_overlap must lie above 0 and not above 1");
+  }
   return CheckRandomPairFlags();
 }
 
@@ -373,6 +379,7 @@ Subcommand Evaluate() {
        "labels",
        "query",
        "query_truth",
+       "positive_overlap",
        "csv",
        "curves",
        "plot",

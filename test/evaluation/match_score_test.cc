@@ -252,6 +252,18 @@ TEST(ScoreMatchesTest, NearAnswersAndSmallOverlapsCountForNothing) {
   EXPECT_EQ(score.threshold, 3.);
 }
 
+TEST(MarkPositivesTest, AsksForSmallerOverlapsToo) {
+  PairTruths pairs = ComputePairTruths(RowOfRectangles(), Row());
+  const std::vector<MatchRow> matches = {Answer(0, 3, 5.), Answer(0, 6, 3.)};
+  // Overlaps are 0.75 twice, 0.5 twice, 0.25 once, and else 0.
+  MarkPositives(0.6, &pairs);
+  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).num_positives, 2);
+  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).recall_at_precision_1, 1. / 2.);
+  MarkPositives(0.2, &pairs);
+  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).num_positives, 5);
+  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).recall_at_precision_1, 2. / 5.);
+}
+
 TEST(ScoreMatchesTest, TiesAreTakenInTheOrderOfTheTable) {
   const MatchRow right = Answer(0, 3, 5.);
   const MatchRow wrong = Answer(0, 12, 5., kWrong);

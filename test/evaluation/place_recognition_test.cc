@@ -14,7 +14,8 @@ class PlaceRecognitionTest : public ::testing::Test {
   void Add(const SubmapId& reference, const SubmapId& query,
            const double overlap, const AnswerVerdict verdict,
            const bool accepted) {
-    pairs_[{reference, query}] = {overlap, Eigen::Vector2d::Zero()};
+    pairs_[{reference, query}] = {overlap, Eigen::Vector2d::Zero(),
+                                  overlap >= kPositiveOverlap};
     AnswerLabel label;
     label.reference = reference;
     label.query = query;
@@ -42,7 +43,7 @@ TEST_F(PlaceRecognitionTest, CountsMatchesAndQueries) {
   Add({0, 0}, {0, 7}, 0., AnswerVerdict::kWrong, true);
   Add({0, 0}, {0, 8}, 0.4, AnswerVerdict::kNear, true);
   // A pair without an answer.
-  pairs_[{{0, 0}, {0, 9}}] = {0.8, Eigen::Vector2d::Zero()};
+  pairs_[{{0, 0}, {0, 9}}] = {0.8, Eigen::Vector2d::Zero(), true};
   const PlaceRecognitionScore score = Score();
   EXPECT_EQ(score.num_right, 2);
   EXPECT_EQ(score.num_near, 1);
