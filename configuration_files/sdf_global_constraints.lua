@@ -417,6 +417,14 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- agrees to this. Larger: fewer right constraints are dropped.
     max_agreeing_translation_meters = 0.3,
     max_agreeing_rotation = 0.1,
+    -- What that map contradicts by more is doubtful, too. Smaller: finds
+    -- smaller errors, drops more right ones.
+    withdrawal = {
+      -- [m], [rad]
+      max_translation_error_meters = 0.5,
+      max_rotation_error = 0.1,
+      max_num_rounds = 10,
+    },
   },
   -- The HTML page that shows what was done.
   report = {

@@ -197,14 +197,13 @@ std::vector<AuditedConstraint> ListConstraints(
 }
 
 // Holds the constraints against the map that the undoubted ones make.
-void JudgeByMap(const WithdrawalOptions& withdrawal,
-                const AuditOptions& options,
+void JudgeByMap(const AuditOptions& options,
                 const std::set<int>& frozen_trajectories,
                 const ProgressCallback& on_progress, Audit* const audit) {
   const PoseGraph& before = audit->state.pose_graph;
   std::vector<AuditedConstraint>* const constraints = &audit->constraints;
   audit->pose_graph = before;
-  const int num_rounds = withdrawal.max_num_rounds + 2;
+  const int num_rounds = options.withdrawal.max_num_rounds + 2;
   int round = 0;
   const auto optimize = [&] {
     // From the given poses each time: what was dropped leaves no trace.
@@ -215,8 +214,8 @@ void JudgeByMap(const WithdrawalOptions& withdrawal,
     if (on_progress) on_progress(static_cast<double>(++round) / num_rounds);
   };
   if (CountDoubtful(*constraints) > 0) optimize();
-  for (int k = 0; k < withdrawal.max_num_rounds; ++k) {
-    if (!DoubtStrained(withdrawal, constraints)) break;
+  for (int k = 0; k < options.withdrawal.max_num_rounds; ++k) {
+    if (!DoubtStrained(options.withdrawal, constraints)) break;
     optimize();
   }
   const bool rehabilitated = Rehabilitate(options, constraints);
@@ -232,8 +231,9 @@ void JudgeByMap(const WithdrawalOptions& withdrawal,
 }  // namespace
 
 std::string Validate(const AuditOptions& options) {
-  if (std::string error = Validate(options.grouping); !error.empty()) {
-    return error;
+  for (const std::string& error :
+       {Validate(options.grouping), Validate(options.withdrawal)}) {
+    if (!error.empty()) return error;
   }
   if (!(options.max_contradiction_ratio >= 0. &&
         options.max_agreeing_translation_meters >= 0. &&
@@ -313,8 +313,7 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
 
   audit.constraints = ListConstraints(pose_graph, grouped, audit.groups);
   audit.optimization = OptimizationInForce(loop_closing, pose_graph);
-  JudgeByMap(loop_closing.withdrawal, options, frozen_trajectories,
-             clock.Begin("optimise"), &audit);
+  JudgeByMap(options, frozen_trajectories, clock.Begin("optimise"), &audit);
   clock.End();
   return audit;
 }

@@ -44,6 +44,9 @@ struct AuditOptions {
   // agrees with it to this [m], [rad].
   double max_agreeing_translation_meters = 0.3;
   double max_agreeing_rotation = 0.1;
+  // What that map contradicts is doubtful, too. Wider than for closures that
+  // close_loops adds: here right ones of others are at stake.
+  WithdrawalOptions withdrawal = {0.5, 0.1, 10};
 };
 [[nodiscard]] std::string Validate(const AuditOptions& options);
 
@@ -97,7 +100,7 @@ struct Audit {
 };
 
 // Fails where the file can't be read. Of the options of loop closing those of
-// places, matching, consistency, optimisation and withdrawal apply. The same
+// places, matching, consistency and optimisation apply. The same
 // for any number of threads.
 [[nodiscard]] absl::StatusOr<Audit> AuditMap(
     const LoopClosingOptions& loop_closing, const AuditOptions& options,

@@ -275,6 +275,7 @@ void VisitOptions(Visitor& visit, AuditOptions& options) {
   visit("max_agreeing_translation_meters",
         options.max_agreeing_translation_meters);
   visit("max_agreeing_rotation", options.max_agreeing_rotation);
+  visit("withdrawal", options.withdrawal);
 }
 
 template <typename Visitor>
