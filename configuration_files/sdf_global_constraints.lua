@@ -231,6 +231,9 @@ SDF_GLOBAL_CONSTRAINTS = {
         log_contradiction = -5.57,
         bias = -0.633,
       },
+      -- Neighbours raise a pair's own score by no more than this. Larger: more
+      -- matches whose own walls hardly agree.
+      max_gain = 3.,
     },
     -- Whether closures of submaps that local SLAM tore, so that walls stand in
     -- them twice, say nothing of others and need the support of others. Reads

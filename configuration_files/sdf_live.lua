@@ -39,6 +39,9 @@ SDF_LIVE = {
     window_meters = 15.,
     -- [m] Cells of the query's grid; best that of the map's submaps.
     resolution_meters = 0.05,
+    -- The best so many submaps of the map are matched with the query. Larger:
+    -- found sooner, more CPU time.
+    max_num_candidates = 50,
     -- Sum of the scores of all matches that agree on the pose; log-odds. Larger:
     -- later and more certain.
     min_score = 7.,

@@ -31,6 +31,7 @@ CORE = {
 }
 OFFLINE = {
     "file": [],
+    "recording": ["geometry"],
     "pose_graph": ["geometry", "grid", "field", "verification", "closure"],
     "pbstream": ["geometry", "grid", "pose_graph/pose_graph.h", "proto"],
     "place_store": [*CORE, "pbstream", "proto"],
@@ -48,15 +49,18 @@ OFFLINE = {
     "report": [*CORE, "file", "pose_graph", "pbstream", "evaluation"],
 }
 TOP = {
-    "live": [*CORE, "pose_graph", "pbstream", "place_store", "config", "proto"],
+    "live": [*CORE, "file", "recording", "pose_graph", "pbstream",
+             "place_store", "config", "proto"],
     "tools": [*CORE, *OFFLINE, "live"],
+    # Packages of their own, on top of what is installed.
+    "ros": ["live"],
 }
 ALLOWED = {**CORE, **OFFLINE, **TOP}
 
 # What the core may include besides itself: these and the standard library.
 CORE_LIBRARIES = ("Eigen/", "glog/")
 # The only folders that see Cartographer's own headers.
-HOST_FOLDERS = ("cartographer_sdf/live/", "test/live/")
+HOST_FOLDERS = ("cartographer_sdf/live/", "test/live/", "ros/")
 
 SPDX = ("SPDX-FileCopyrightText: 2026 The cartographer_sdf authors",
         "SPDX-License-Identifier: Apache-2.0")
@@ -64,7 +68,7 @@ SPDX_SUFFIXES = (".h", ".cc", ".proto", ".py", ".sh", ".lua", ".cmake",
                  ".cmake.in")
 SPDX_NAMES = ("CMakeLists.txt", ".ci/run")
 CHECKED = ("CMakeLists.txt", ".ci", "cartographer_sdf", "cmake",
-           "configuration_files", "proto", "scripts", "test")
+           "configuration_files", "proto", "ros", "scripts", "test")
 
 INCLUDE = re.compile(r"^\s*#\s*include\b\s*(.*)$")
 SPELLED_INCLUDE = re.compile(r'^(?:"([^"]+)"|<([^>]+)>)')
@@ -93,7 +97,8 @@ def target_folder(header):
 def check_own_include(path, header):
     """A violation of the arrows by an include of one of our headers, or None."""
     parts = path.split("/")
-    folder, target = parts[1], target_folder(header)
+    folder = "ros" if parts[0] == "ros" else parts[1]
+    target = target_folder(header)
     if parts[0] == "test":
         # Tests of the core link the core alone.
         if folder in CORE and target not in CORE:

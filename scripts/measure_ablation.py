@@ -39,7 +39,8 @@ SETS = {
 class Variant(typing.NamedTuple):
     name: str
     what: str
-    # Lua; `place`, `match`, `verification` and `weights` are those tables.
+    # Lua; `place`, `match`, `verification`, `weights` and `neighbourhood` are
+    # those tables.
     overrides: str = ""
     flags: tuple = ()
     # Whether scores mean the same as in the shipped options, so that what is
@@ -51,6 +52,10 @@ class Variant(typing.NamedTuple):
 # the others.
 VARIANTS = [
     Variant("shipped", "all options as shipped"),
+    Variant("alone", "each pair by itself, without its neighbours", "",
+            ("--alone",), False),
+    Variant("no_proposals", "neighbours judge, but propose no poses",
+            "neighbourhood.min_proposing_score = 1e9"),
     Variant("paper", "the method as published: ratio test, RANSAC, inliers "
             "counted", "", ("--method", "paper"), False),
     Variant("any_kind", "a keypoint matches any kind",
@@ -92,6 +97,7 @@ PREAMBLE = """include "sdf_global_constraints.lua"
 local place = SDF_GLOBAL_CONSTRAINTS.loop_closing.place
 local match = SDF_GLOBAL_CONSTRAINTS.loop_closing.match
 local verification = match.verification
+local neighbourhood = SDF_GLOBAL_CONSTRAINTS.loop_closing.neighbourhood
 local weights = verification.score_weights
 -- Takes terms out of the score.
 local function drop(part)

@@ -240,6 +240,7 @@ void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
   visit("min_pair_score", options.min_pair_score);
   visit("min_proposing_score", options.min_proposing_score);
   visit("weights", options.weights);
+  visit("max_gain", options.max_gain);
 }
 
 template <typename Visitor>

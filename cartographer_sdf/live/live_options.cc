@@ -15,6 +15,7 @@ void VisitOptions(Visitor& visit, LocalizationOptions& options) {
   visit("query_interval_meters", options.query_interval_meters);
   visit("window_meters", options.window_meters);
   visit("resolution_meters", options.resolution_meters);
+  visit("max_num_candidates", options.max_num_candidates);
   visit("min_score", options.min_score);
   visit("min_lead", options.min_lead);
   visit("min_num_queries", options.min_num_queries);
@@ -53,6 +54,9 @@ std::string Validate(const LocalizationOptions& options) {
   if (!(options.window_meters > 0.)) return "window_meters must be positive";
   if (!(options.resolution_meters >= 0.01 && options.resolution_meters <= 1.)) {
     return "resolution_meters must lie between 0.01 and 1";
+  }
+  if (options.max_num_candidates < 1) {
+    return "max_num_candidates must be positive";
   }
   if (!(options.min_lead >= 0.)) return "min_lead must not be negative";
   if (options.min_num_queries < 1) return "min_num_queries must be positive";

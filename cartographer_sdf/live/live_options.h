@@ -32,6 +32,9 @@ struct LocalizationOptions {
   double window_meters = 15.;
   // Cells of the query's grid [m].
   double resolution_meters = 0.05;
+  // The best so many submaps of the map are matched with the query, which shows
+  // less than a submap does. Larger: found sooner, more CPU time.
+  int max_num_candidates = 50;
   // Summed scores of the matches that agree on one pose, beyond which the
   // trajectory counts as located; log-odds. Matches of overlapping submaps tell
   // much the same, hence the high threshold.

@@ -87,6 +87,7 @@ std::string Validate(const NeighbourhoodOptions& options) {
     return "min_overlap_area must not be negative, prior_wall_length_meters "
            "and prior_contradiction_ratio must be positive";
   }
+  if (!(options.max_gain >= 0.)) return "max_gain must not be negative";
   return Validate(options.weights);
 }
 
@@ -121,7 +122,7 @@ double NeighbourhoodScore(const NeighbourhoodOptions& options,
   for (int k = 0; k < kNumNeighbourhoodTerms; ++k) {
     score += options.weights.*kTerms[k].weight * terms[k];
   }
-  return score;
+  return std::min(score, pair_score + options.max_gain);
 }
 
 Neighbourhood AskNeighbours(const NeighbourhoodOptions& options,

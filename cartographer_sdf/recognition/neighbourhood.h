@@ -28,8 +28,8 @@
 namespace cartographer_sdf {
 
 // The score of a match in its neighbourhood, log-odds of being right, is linear
-// in these. Learned by logistic regression, see scripts/learn_score.py and
-// docs/design.md.
+// in these, up to NeighbourhoodOptions::max_gain. Learned by logistic
+// regression, see scripts/learn_score.py and docs/design.md.
 struct NeighbourhoodWeights {
   double pair_score = 0.515;
   double log_contradiction = -5.57;
@@ -58,6 +58,9 @@ struct NeighbourhoodOptions {
   // neighbours, log-odds.
   double min_proposing_score = 0.;
   NeighbourhoodWeights weights;
+  // Neighbours raise the score of a pair by no more than this, log-odds: where
+  // its own walls speak against it, they are not enough.
+  double max_gain = 3.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodOptions& options);
 

@@ -133,28 +133,13 @@ std::string HelpOfFlag(const std::string& name, const bool is_required) {
 }
 
 // One line, whatever the message holds.
-int Fail(const std::string& subcommand, const absl::Status& status) {
+int Fail(const std::string& invocation, const absl::Status& status) {
   std::string message(status.message());
   for (char& c : message) {
     if (absl::ascii_iscntrl(static_cast<unsigned char>(c))) c = ' ';
   }
-  std::cerr << kProgram << (subcommand.empty() ? "" : " ") << subcommand << ": "
-            << message << "\n";
+  std::cerr << invocation << ": " << message << "\n";
   return IsUsageError(status) ? kWrongUsage : kWorldAtFault;
-}
-
-int RunSubcommand(const Subcommand& subcommand,
-                  const std::vector<std::string>& arguments) {
-  if (std::any_of(arguments.begin(), arguments.end(), IsHelp)) {
-    std::cout << HelpText(subcommand);
-    return kDone;
-  }
-  absl::Status status = SetFlags(subcommand, arguments);
-  if (status.ok()) status = subcommand.run();
-  if (status.ok() && !std::cout.flush()) {
-    status = absl::UnavailableError("cannot write to the standard output");
-  }
-  return status.ok() ? kDone : Fail(subcommand.name, status);
 }
 
 }  // namespace
@@ -189,9 +174,9 @@ absl::Status SetFlags(const Subcommand& subcommand,
   }
   for (const std::string& name : subcommand.required_flags) {
     if (FlagInfo(name).current_value.empty()) {
-      return UsageError(absl::StrCat("--", name,
-                                     " is missing; usage: ", kProgram, " ",
-                                     subcommand.name, " ", subcommand.usage));
+      return UsageError(absl::StrCat(
+          "--", name, " is missing; usage: ", subcommand.Invocation(), " ",
+          subcommand.usage));
     }
   }
   return absl::OkStatus();
@@ -199,9 +184,8 @@ absl::Status SetFlags(const Subcommand& subcommand,
 
 std::string HelpText(const Subcommand& subcommand) {
   std::string text = absl::StrCat(
-      kProgram, " ", subcommand.name, ": ", subcommand.summary, ".\n\nUsage:\n",
-      Wrap(absl::StrCat(kProgram, " ", subcommand.name, " ", subcommand.usage),
-           2));
+      subcommand.Invocation(), ": ", subcommand.summary, ".\n\nUsage:\n",
+      Wrap(absl::StrCat(subcommand.Invocation(), " ", subcommand.usage), 2));
   if (!subcommand.description.empty()) {
     absl::StrAppend(&text, "\n", Wrap(subcommand.description, 0));
   }
@@ -237,11 +221,25 @@ std::string HelpText(const std::vector<Subcommand>& subcommands) {
          "wrong usage.\n";
 }
 
+int RunSubcommand(const Subcommand& subcommand,
+                  const std::vector<std::string>& arguments) {
+  if (std::any_of(arguments.begin(), arguments.end(), IsHelp)) {
+    std::cout << HelpText(subcommand);
+    return kDone;
+  }
+  absl::Status status = SetFlags(subcommand, arguments);
+  if (status.ok()) status = subcommand.run();
+  if (status.ok() && !std::cout.flush()) {
+    status = absl::UnavailableError("cannot write to the standard output");
+  }
+  return status.ok() ? kDone : Fail(subcommand.Invocation(), status);
+}
+
 int RunProgram(const std::vector<Subcommand>& subcommands,
                const std::vector<std::string>& arguments) {
   if (arguments.empty()) {
-    return Fail("", UsageError(absl::StrCat("which subcommand? See ", kProgram,
-                                            " --help")));
+    return Fail(kProgram, UsageError(absl::StrCat("which subcommand? See ",
+                                                  kProgram, " --help")));
   }
   const std::string& name = arguments.front();
   if (IsHelp(name)) {
@@ -261,11 +259,11 @@ int RunProgram(const std::vector<Subcommand>& subcommands,
     names.push_back(subcommand.name);
   }
   const std::string suggestion = Suggestion(name, "", names);
-  return Fail(
-      "", UsageError(absl::StrCat(
-              "unknown subcommand '", name, "'",
-              suggestion.empty() ? absl::StrCat("; see ", kProgram, " --help")
-                                 : suggestion)));
+  return Fail(kProgram, UsageError(absl::StrCat(
+                            "unknown subcommand '", name, "'",
+                            suggestion.empty()
+                                ? absl::StrCat("; see ", kProgram, " --help")
+                                : suggestion)));
 }
 
 }  // namespace cartographer_sdf

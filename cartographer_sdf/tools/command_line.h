@@ -24,6 +24,11 @@ namespace cartographer_sdf {
 [[nodiscard]] std::string HelpText(const std::vector<Subcommand>& subcommands);
 [[nodiscard]] std::string HelpText(const Subcommand& subcommand);
 
+// One command, with its flags. Messages go to stdout and stderr; returns the
+// exit code.
+[[nodiscard]] int RunSubcommand(const Subcommand& subcommand,
+                                const std::vector<std::string>& arguments);
+
 // The whole program. Messages go to stdout and stderr; returns the exit code.
 [[nodiscard]] int RunProgram(const std::vector<Subcommand>& subcommands,
                              const std::vector<std::string>& arguments);

@@ -105,7 +105,7 @@ absl::Status RunFalsify() {
 }  // namespace
 
 Subcommand FalsifySubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "falsify",
       "add wrong constraints to a map, to test audit with",
       "--input A.pbstream --output B.pbstream --wrong_constraints W.csv "
@@ -118,8 +118,9 @@ Subcommand FalsifySubcommand() {
       {"input", "output", "wrong_constraints"},
       {"kinds", "pairs", "seed", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},
-      &RunFalsify,
-      /*is_for_developers=*/true};
+      &RunFalsify};
+  subcommand.is_for_developers = true;
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

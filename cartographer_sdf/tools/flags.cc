@@ -17,7 +17,8 @@ DEFINE_string(
     map, "",
     "relocalize: the map in which to look, a .pbstream. simulate: the "
     "floor plan to drive through, a PGM with dark walls; an office is "
-    "invented if empty.");
+    "invented if empty. cartographer_sdf_run_log: a frozen map to localise in, "
+    "a .pbstream.");
 DEFINE_string(query, "",
               "Another map, whose submaps are searched in those of --input or "
               "--map. In match, none if empty: the submaps of --input in each "

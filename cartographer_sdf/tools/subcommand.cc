@@ -3,14 +3,7 @@
 
 #include "cartographer_sdf/tools/subcommand.h"
 
-#include "absl/strings/cord.h"
-
 namespace cartographer_sdf {
-namespace {
-
-constexpr char kUsagePayload[] = "cartographer_sdf/usage";
-
-}  // namespace
 
 Subcommand AuditSubcommand();
 Subcommand CloseLoopsSubcommand();
@@ -34,16 +27,6 @@ std::vector<Subcommand> AllSubcommands() {
           SimulateSubcommand(),
           FalsifySubcommand(),
           Info()};
-}
-
-absl::Status UsageError(const std::string& message) {
-  absl::Status status = absl::InvalidArgumentError(message);
-  status.SetPayload(kUsagePayload, absl::Cord());
-  return status;
-}
-
-bool IsUsageError(const absl::Status& status) {
-  return status.GetPayload(kUsagePayload).has_value();
 }
 
 }  // namespace cartographer_sdf

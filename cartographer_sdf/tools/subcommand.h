@@ -12,10 +12,12 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "cartographer_sdf/tools/usage_error.h"
 
 namespace cartographer_sdf {
 
 struct Subcommand {
+  // Empty where the program has one command only.
   std::string name;
   // One line, without a full stop.
   std::string summary;
@@ -31,17 +33,18 @@ struct Subcommand {
   // Called once, with the flags set. An error's message becomes the one line on
   // stderr and the exit code 1, or 2 for a UsageError.
   absl::Status (*run)() = nullptr;
+  std::string program = "cartographer_sdf";
   // For those who work on the project: the general help does not list it.
   bool is_for_developers = false;
+
+  // What the user types before the flags.
+  [[nodiscard]] std::string Invocation() const {
+    return name.empty() ? program : program + " " + name;
+  }
 };
 
 // In the order of the help.
 [[nodiscard]] std::vector<Subcommand> AllSubcommands();
-
-// The user is at fault, not the world: flags that do not go together, numbers
-// out of range.
-[[nodiscard]] absl::Status UsageError(const std::string& message);
-[[nodiscard]] bool IsUsageError(const absl::Status& status);
 
 }  // namespace cartographer_sdf
 

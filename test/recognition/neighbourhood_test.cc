@@ -142,6 +142,18 @@ TEST(NeighbourhoodScoreTest, IsLinearInItsTerms) {
               0.5 * 6. - 4. * LogContradiction(options, evidence) - 1., 1e-12);
 }
 
+TEST(NeighbourhoodScoreTest, NeighboursAloneMakeNothingCertain) {
+  NeighbourhoodOptions options;
+  options.weights = {0.5, -4., -1.};
+  options.max_gain = 2.5;
+  // Hundreds of metres of wall, of which nothing contradicts.
+  const NeighbourhoodEvidence evidence{20, 1000., 0.};
+  EXPECT_GT(-4. * LogContradiction(options, evidence), 5.);
+  EXPECT_EQ(NeighbourhoodScore(options, -2., evidence), 0.5);
+  EXPECT_NEAR(NeighbourhoodScore(options, 10., evidence),
+              0.5 * 10. - 4. * LogContradiction(options, evidence) - 1., 1e-12);
+}
+
 TEST(NeighbourhoodOptionsTest, SaysWhatIsWrong) {
   NeighbourhoodOptions options;
   EXPECT_EQ(Validate(options), "");
@@ -150,6 +162,9 @@ TEST(NeighbourhoodOptionsTest, SaysWhatIsWrong) {
   options = {};
   options.prior_contradiction_ratio = 0.;
   EXPECT_THAT(Validate(options), ::testing::HasSubstr("prior"));
+  options = {};
+  options.max_gain = -1.;
+  EXPECT_THAT(Validate(options), ::testing::HasSubstr("max_gain"));
   options = {};
   options.weights.bias = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(Validate(options), ::testing::HasSubstr("bias"));

@@ -22,12 +22,13 @@ struct ProgramResult {
   std::string error;
 };
 
-// Runs the program as a process of its own, with files for its output.
-inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
+// Runs a program as a process of its own, with files for its output.
+inline ProgramResult RunProgramFile(const std::string& program,
+                                    const std::vector<std::string>& arguments) {
   const cartographer_sdf::testing::TemporaryDirectory directory;
   const std::string output = directory.File("output");
   const std::string error = directory.File("error");
-  std::vector<std::string> words = {kTestProgram};
+  std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -47,6 +48,10 @@ inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
   result.output = directory.Read("output");
   result.error = directory.Read("error");
   return result;
+}
+
+inline ProgramResult RunTestProgram(const std::vector<std::string>& arguments) {
+  return RunProgramFile(kTestProgram, arguments);
 }
 
 #endif  // TEST_TESTING_PROGRAM_H_

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/live/host_conversion.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "cartographer/mapping/2d/submap_2d.h"
+#include "cartographer/transform/transform.h"
+#include "cartographer_sdf/pbstream/grid_conversion.h"
+#include "cartographer_sdf/serialized_state.pb.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+
+namespace mapping = cartographer::mapping;
+namespace transform = cartographer::transform;
+
+Rigid2 FromHost(const transform::Rigid3d& host_pose) {
+  const transform::Rigid2d pose = transform::Project2D(host_pose);
+  return Rigid2(pose.translation(), pose.rotation().angle());
+}
+
+SubmapId FromHost(const mapping::SubmapId& id) {
+  return {id.trajectory_id, id.submap_index};
+}
+
+NodeId FromHost(const mapping::NodeId& id) {
+  return {id.trajectory_id, id.node_index};
+}
+
+mapping::SubmapId ToHost(const SubmapId& id) {
+  return mapping::SubmapId(id.trajectory, id.index);
+}
+
+mapping::NodeId ToHost(const NodeId& id) {
+  return mapping::NodeId(id.trajectory, id.index);
+}
+
+Rigid2 LocalNodePose(const mapping::TrajectoryNode::Data& node) {
+  return FromHost(node.local_pose * transform::Rigid3d::Rotation(
+                                        node.gravity_alignment.inverse()));
+}
+
+std::vector<SurfacePoint> NodeScan(const mapping::TrajectoryNode::Data& node) {
+  std::vector<SurfacePoint> points;
+  points.reserve(node.filtered_gravity_aligned_point_cloud.size());
+  for (const cartographer::sensor::RangefinderPoint& point :
+       node.filtered_gravity_aligned_point_cloud) {
+    points.push_back({point.position.head<2>().cast<double>(), 1.});
+  }
+  return points;
+}
+
+HostConstraint ToHost(const Constraint& constraint,
+                      const Eigen::Quaterniond& gravity_alignment) {
+  // (submap <- tracking frame of the node)
+  const transform::Rigid3d zbar_ij =
+      transform::Embed3D(transform::Rigid2d(
+          constraint.T_submap_node.translation(),
+          Eigen::Rotation2Dd(constraint.T_submap_node.rotation()))) *
+      transform::Rigid3d::Rotation(gravity_alignment);
+  return HostConstraint{
+      ToHost(constraint.submap),
+      ToHost(constraint.node),
+      {zbar_ij, constraint.translation_weight, constraint.rotation_weight},
+      constraint.tag == Constraint::Tag::kInterSubmap
+          ? HostConstraint::INTER_SUBMAP
+          : HostConstraint::INTRA_SUBMAP};
+}
+
+std::optional<OccupancyGrid> CopyGrid(const mapping::Grid2D& grid,
+                                      const Rigid2& T_local_submap) {
+  // Through the serialized form, whose conversion knows all kinds of grids.
+  proto::Grid2D copy;
+  if (!copy.ParseFromString(
+          grid.ComputeCroppedGrid()->ToProto().SerializeAsString())) {
+    return std::nullopt;
+  }
+  absl::StatusOr<OccupancyGrid> converted =
+      MakeOccupancyGrid(copy, T_local_submap);
+  if (!converted.ok()) return std::nullopt;
+  return *std::move(converted);
+}
+
+std::optional<OccupancyGrid> CopyGrid(const mapping::Submap& submap) {
+  const auto* const planar = dynamic_cast<const mapping::Submap2D*>(&submap);
+  if (planar == nullptr || planar->grid() == nullptr) return std::nullopt;
+  return CopyGrid(*planar->grid(), FromHost(submap.local_pose()));
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,406 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/live/log_run.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/strings/str_cat.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer/common/time.h"
+#include "cartographer/mapping/map_builder.h"
+#include "cartographer/mapping/pose_graph.h"
+#include "cartographer/sensor/imu_data.h"
+#include "cartographer/sensor/odometry_data.h"
+#include "cartographer/sensor/timed_point_cloud_data.h"
+#include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/recording/motion.h"
+
+namespace cartographer_sdf {
+namespace {
+
+namespace mapping = cartographer::mapping;
+namespace sensor = cartographer::sensor;
+namespace transform = cartographer::transform;
+using cartographer::common::Time;
+using SensorId = mapping::TrajectoryBuilderInterface::SensorId;
+
+constexpr char kRangeSensor[] = "range";
+constexpr char kImuSensor[] = "imu";
+constexpr char kOdometrySensor[] = "odom";
+// What an accelerometer at rest shows [m/s^2].
+constexpr double kGravity = 9.8;
+// A final optimisation lets closures into the graph, the next acts on them.
+constexpr int kMaxFinalOptimizations = 4;
+
+Time ToHostTime(const double unix_seconds) {
+  // Times in the year 2001 have no fraction finer than 1e-7 s in a double, and
+  // the host's ticks are so long.
+  return cartographer::common::FromUniversal(
+      std::llround(unix_seconds * 1e7) +
+      cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000ll);
+}
+
+transform::Rigid3d ToHostPose(const Rigid2& pose) {
+  return transform::Rigid3d(
+      {pose.translation().x(), pose.translation().y(), 0.},
+      Eigen::Quaterniond(
+          Eigen::AngleAxisd(pose.rotation(), Eigen::Vector3d::UnitZ())));
+}
+
+// Every beam, as the host wants to see those that hit nothing, too. A range
+// beyond max_range frees the first metres of its way.
+sensor::TimedPointCloudData ToHostScan(const Recording& recording,
+                                       const LaserScan& scan) {
+  sensor::TimedPointCloudData data;
+  data.time = ToHostTime(scan.time);
+  data.origin = Eigen::Vector3f::Zero();
+  data.ranges.reserve(scan.ranges.size());
+  for (size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double angle = recording.first_angle +
+                         recording.angle_increment * static_cast<double>(i);
+    const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.);
+    data.ranges.push_back(sensor::TimedRangefinderPoint{
+        (scan.ranges[i] * direction).cast<float>(), 0.f});
+  }
+  return data;
+}
+
+double WallSeconds() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+// Of all threads.
+double ProcessCpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) +
+           1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// The host prints how an optimisation goes that somebody waits for; standard
+// output is not its to use.
+class SilentStandardOutput {
+ public:
+  SilentStandardOutput() : buffer_(std::cout.rdbuf(nullptr)) {}
+  SilentStandardOutput(const SilentStandardOutput&) = delete;
+  SilentStandardOutput& operator=(const SilentStandardOutput&) = delete;
+  ~SilentStandardOutput() {
+    std::cout.rdbuf(buffer_);
+    std::cout.clear();
+  }
+
+ private:
+  std::streambuf* const buffer_;
+};
+
+// What the threads of one run share.
+class Clock {
+ public:
+  Clock() : begin_wall_(WallSeconds()), begin_cpu_(ProcessCpuSeconds()) {}
+  [[nodiscard]] double wall() const { return WallSeconds() - begin_wall_; }
+  [[nodiscard]] double cpu() const { return ProcessCpuSeconds() - begin_cpu_; }
+
+ private:
+  const double begin_wall_;
+  const double begin_cpu_;
+};
+
+class Run {
+ public:
+  Run(const Recording& recording, const LogRunOptions& options)
+      : recording_(recording),
+        options_(options),
+        distances_(DrivenDistances(recording)),
+        uses_imu_(
+            options.host.trajectory_builder.trajectory_builder_2d_options()
+                .use_imu_data()),
+        map_builder_(CreateMapBuilder(
+            mapping::CreateMapBuilder(options.host.map_builder), options.live,
+            [this](const LocalizationResult& result) { Located(result); })),
+        live_(AsLiveMapBuilder(map_builder_.get())) {}
+
+  absl::Status LoadMap() {
+    if (!options_.map_path.has_value()) return absl::OkStatus();
+    // The host aborts on files that are not whole.
+    const absl::StatusOr<MapState> state = ReadMap(*options_.map_path);
+    if (!state.ok()) return state.status();
+    if (state->num_trajectories == 0) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(*options_.map_path, " holds no trajectory"));
+    }
+    map_builder_->LoadStateFromFile(*options_.map_path,
+                                    /*load_frozen_state=*/true);
+    WaitForSearcher();
+    return absl::OkStatus();
+  }
+
+  // False where no node came of it.
+  bool Drive(const std::function<void(double)>& on_progress) {
+    std::set<SensorId> sensors = {
+        {SensorId::SensorType::RANGE, kRangeSensor},
+        {SensorId::SensorType::ODOMETRY, kOdometrySensor}};
+    if (uses_imu_) sensors.insert({SensorId::SensorType::IMU, kImuSensor});
+    // Before the first scan can look at it.
+    clock_ = std::make_unique<Clock>();
+    result_.trajectory_id = map_builder_->AddTrajectoryBuilder(
+        sensors, options_.host.trajectory_builder,
+        [this](const int, const Time time, const transform::Rigid3d& local_pose,
+               sensor::RangeData,
+               const std::unique_ptr<
+                   const mapping::TrajectoryBuilderInterface::InsertionResult>
+                   insertion) { Inserted(time, local_pose, insertion.get()); });
+    const std::vector<LaserScan>& scans = recording_.scans;
+    for (size_t i = 0; i < scans.size(); ++i) {
+      KeepPace(scans[i].time - scans.front().time);
+      {
+        const absl::MutexLock lock(&mutex_);
+        now_ = i;
+      }
+      Feed(i);
+      if (!options_.real_time_factor.has_value()) WaitForSearcher();
+      if (on_progress) {
+        on_progress(static_cast<double>(i + 1) /
+                    static_cast<double>(scans.size()));
+      }
+    }
+    result_.num_scans = static_cast<int>(scans.size());
+    result_.duration = scans.back().time - scans.front().time;
+    result_.distance = distances_.back();
+    result_.wall_seconds = clock_->wall();
+    result_.cpu_seconds = clock_->cpu();
+    return !result_.nodes.empty();
+  }
+
+  void Finish() {
+    map_builder_->FinishTrajectory(result_.trajectory_id);
+    for (int k = 0; k < kMaxFinalOptimizations; ++k) {
+      WaitForSearcher();
+      const int num_injected = NumInjected();
+      map_builder_->pose_graph()->RunFinalOptimization();
+      WaitForSearcher();
+      if (NumInjected() == num_injected) break;
+    }
+    result_.final_wall_seconds = clock_->wall() - result_.wall_seconds;
+    result_.final_cpu_seconds = clock_->cpu() - result_.cpu_seconds;
+  }
+
+  absl::Status WriteMap() const {
+    if (!options_.output_path.has_value()) return absl::OkStatus();
+    const std::string& path = *options_.output_path;
+    const std::string temporary = path + ".part";
+    const bool written = map_builder_->SerializeStateToFile(
+        /*include_unfinished_submaps=*/true, temporary);
+    if (written && std::rename(temporary.c_str(), path.c_str()) == 0) {
+      return absl::OkStatus();
+    }
+    std::remove(temporary.c_str());
+    return absl::UnavailableError(absl::StrCat("cannot write ", path));
+  }
+
+  LogRunResult TakeResult() {
+    if (live_ != nullptr) {
+      result_.summary = live_->GetSummary();
+      result_.closures = live_->GetClosures();
+    }
+    const absl::MutexLock lock(&mutex_);
+    result_.localizations = std::move(localizations_);
+    return std::move(result_);
+  }
+
+ private:
+  void WaitForSearcher() const {
+    if (live_ != nullptr) live_->WaitUntilIdle();
+  }
+  [[nodiscard]] int NumInjected() const {
+    return live_ == nullptr ? 0 : live_->GetSummary().num_injected;
+  }
+
+  void KeepPace(const double recording_seconds) {
+    if (!options_.real_time_factor.has_value()) return;
+    const double due = recording_seconds / *options_.real_time_factor;
+    const double early = due - clock_->wall();
+    if (early > 0.) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(early));
+    } else {
+      result_.max_delay_seconds = std::max(result_.max_delay_seconds, -early);
+    }
+  }
+
+  void Feed(const size_t i) {
+    const LaserScan& scan = recording_.scans[i];
+    const std::vector<MotionSample> samples =
+        i == 0
+            ? std::vector<MotionSample>{{scan.time, scan.T_odometry_robot, 0.}}
+            : MotionBetween(recording_.scans[i - 1], scan);
+    const sensor::TimedPointCloudData host_scan = ToHostScan(recording_, scan);
+    mapping::TrajectoryBuilderInterface* const builder =
+        map_builder_->GetTrajectoryBuilder(result_.trajectory_id);
+    for (const MotionSample& sample : samples) {
+      const Time time = ToHostTime(sample.time);
+      if (uses_imu_) {
+        AddSensorData(builder, kImuSensor,
+                      sensor::ImuData{
+                          time, {0., 0., kGravity}, {0., 0., sample.yaw_rate}});
+      }
+      AddSensorData(
+          builder, kOdometrySensor,
+          sensor::OdometryData{time, ToHostPose(sample.T_odometry_robot)});
+    }
+    AddSensorData(builder, kRangeSensor, host_scan);
+  }
+
+  // The host works on a scan as soon as all sensors have reached its time,
+  // whichever comes last.
+  template <typename SensorData>
+  void AddSensorData(mapping::TrajectoryBuilderInterface* const builder,
+                     const std::string& sensor, const SensorData& data) {
+    const double begin = WallSeconds();
+    builder->AddSensorData(sensor, data);
+    result_.sensor_seconds.push_back(WallSeconds() - begin);
+  }
+
+  // On the sensor thread.
+  void Inserted(
+      const Time time, const transform::Rigid3d& local_pose,
+      const mapping::TrajectoryBuilderInterface::InsertionResult* const
+          insertion) {
+    if (insertion == nullptr) return;
+    NodeMoment moment;
+    moment.node_index = insertion->node_id.node_index;
+    moment.time = FromHostTime(time);
+    moment.T_map_tracking =
+        FromHost(map_builder_->pose_graph()->GetLocalToGlobalTransform(
+                     insertion->node_id.trajectory_id) *
+                 local_pose);
+    moment.is_connected = IsConnected(insertion->node_id.trajectory_id);
+    moment.cpu_seconds = clock_->cpu();
+    const absl::MutexLock lock(&mutex_);
+    moment.distance = distances_[now_];
+    result_.nodes.push_back(moment);
+  }
+
+  [[nodiscard]] bool IsConnected(const int trajectory_id) const {
+    if (!options_.map_path.has_value()) return false;
+    const auto* const pose_graph =
+        dynamic_cast<mapping::PoseGraph*>(map_builder_->pose_graph());
+    if (pose_graph == nullptr) return false;
+    for (const std::vector<int>& component :
+         pose_graph->GetConnectedTrajectories()) {
+      if (std::find(component.begin(), component.end(), trajectory_id) !=
+          component.end()) {
+        return component.size() > 1;
+      }
+    }
+    return false;
+  }
+
+  // On the searcher's thread.
+  void Located(const LocalizationResult& result) {
+    if (clock_ == nullptr) return;
+    const double cpu = clock_->cpu();
+    const absl::MutexLock lock(&mutex_);
+    localizations_.push_back(LocalizationMoment{
+        result, recording_.scans[now_].time, distances_[now_], cpu});
+  }
+
+  const Recording& recording_;
+  const LogRunOptions& options_;
+  const std::vector<double> distances_;
+  const bool uses_imu_;
+  std::unique_ptr<Clock> clock_;
+  LogRunResult result_;
+  absl::Mutex mutex_;
+  // The scan that was fed last.
+  size_t now_ ABSL_GUARDED_BY(mutex_) = 0;
+  std::vector<LocalizationMoment> localizations_ ABSL_GUARDED_BY(mutex_);
+  // The last, as its threads use the others until it is gone.
+  const std::unique_ptr<mapping::MapBuilderInterface> map_builder_;
+  LiveMapBuilder* const live_;
+};
+
+absl::Status CheckWritable(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("cannot write ", path, ": it is a directory"));
+  }
+  const std::filesystem::path parent =
+      std::filesystem::absolute(path, ignored).parent_path();
+  if (!std::filesystem::is_directory(parent, ignored)) {
+    return absl::NotFoundError(absl::StrCat(
+        "cannot write ", path, ": there is no directory ", parent.string()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+double FromHostTime(const Time time) {
+  return static_cast<double>(
+             cartographer::common::ToUniversal(time) -
+             cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds *
+                 10000000ll) *
+         1e-7;
+}
+
+std::string Validate(const LogRunOptions& options) {
+  if (options.real_time_factor.has_value() &&
+      !(*options.real_time_factor > 0. && *options.real_time_factor <= 1e6)) {
+    return "real_time_factor must be positive and at most 1e6";
+  }
+  return Validate(options.live);
+}
+
+absl::StatusOr<LogRunResult> RunLog(
+    const Recording& recording, const LogRunOptions& options,
+    const std::function<void(double)>& on_progress) {
+  if (const std::string problem = Validate(options); !problem.empty()) {
+    return absl::InvalidArgumentError(problem);
+  }
+  if (recording.scans.size() < 2) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a recording of ", recording.scans.size(),
+                     " scans is too short to be driven"));
+  }
+  if (options.output_path.has_value()) {
+    if (absl::Status status = CheckWritable(*options.output_path);
+        !status.ok()) {
+      return status;
+    }
+  }
+  // Before the run, as its end prints, too.
+  const SilentStandardOutput silent;
+  Run run(recording, options);
+  if (absl::Status status = run.LoadMap(); !status.ok()) return status;
+  // The host could not read a map again with a trajectory that has no nodes.
+  if (!run.Drive(on_progress)) {
+    return absl::InvalidArgumentError(
+        "Cartographer made no node of the recording: no beam has a range that "
+        "it accepts");
+  }
+  run.Finish();
+  LogRunResult result = run.TakeResult();
+  if (absl::Status status = run.WriteMap(); !status.ok()) return status;
+  return result;
+}
+
+}  // namespace cartographer_sdf

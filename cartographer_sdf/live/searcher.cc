@@ -1,0 +1,391 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/live/searcher.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "cartographer_sdf/live/live_metrics.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+namespace mapping = cartographer::mapping;
+using InsertionResult = mapping::TrajectoryBuilderInterface::InsertionResult;
+
+// Durations of the latest so many callbacks are kept for the summary.
+constexpr size_t kMaxNumDurations = 200000;
+
+double SecondsSince(const std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
+// The host calls it after each optimisation.
+class Hook : public mapping::PoseGraphTrimmer {
+ public:
+  Hook(std::shared_ptr<Searcher> searcher, const int generation)
+      : searcher_(std::move(searcher)), generation_(generation) {}
+
+  void Trim(mapping::Trimmable* const graph) override {
+    searcher_->EnterRound(graph, generation_);
+  }
+  bool IsFinished() override { return searcher_->IsHookObsolete(generation_); }
+
+ private:
+  const std::shared_ptr<Searcher> searcher_;
+  const int generation_;
+};
+
+}  // namespace
+
+Searcher::Announcement::Announcement(Searcher* const searcher)
+    : searcher_(searcher) {
+  searcher_->Announce();
+}
+
+Searcher::Announcement::~Announcement() { searcher_->Settle(); }
+
+Searcher::Searcher(const LiveOptions& options,
+                   mapping::PoseGraph* const pose_graph,
+                   LocalizationCallback on_localization)
+    : options_(options),
+      pose_graph_(pose_graph),
+      on_localization_(std::move(on_localization)),
+      search_(options) {}
+
+void Searcher::Announce() {
+  const absl::MutexLock lock(&mutex_);
+  gate_.Announce();
+}
+
+void Searcher::Settle() {
+  int generation;
+  {
+    const absl::MutexLock lock(&mutex_);
+    generation = gate_.Settle();
+    if (is_shut_down_) return;
+  }
+  if (pose_graph_ != nullptr) {
+    pose_graph_->AddTrimmer(
+        std::make_unique<Hook>(shared_from_this(), generation));
+  }
+}
+
+void Searcher::AddTrajectory(const int trajectory_id,
+                             const bool has_initial_pose,
+                             const bool is_trimmed) {
+  const absl::MutexLock lock(&mutex_);
+  Trajectory& trajectory = trajectories_[trajectory_id];
+  trajectory.is_live = true;
+  trajectory.is_trimmed = is_trimmed;
+  if (options_.localization.enabled && !has_initial_pose) {
+    BeginSearch(trajectory_id, &trajectory);
+  }
+}
+
+void Searcher::BeginSearch(const int trajectory_id,
+                           Trajectory* const trajectory) {
+  trajectory->was_located =
+      trajectory->localization && trajectory->localization->located;
+  trajectory->is_searched = true;
+  trajectory->is_restarted = true;
+  trajectory->scans.clear();
+  trajectory->search_begin = trajectory->distance_driven;
+  trajectory->next_query =
+      trajectory->distance_driven + options_.localization.query_interval_meters;
+  LocalizationResult result;
+  result.trajectory_id = trajectory_id;
+  result.reason = has_map_ ? LocalizationReason::kNotEnoughSeen
+                           : LocalizationReason::kNoMap;
+  trajectory->localization = result;
+}
+
+void Searcher::OnLocalSlamResult(
+    const int trajectory_id, const cartographer::sensor::RangeData& range_data,
+    const InsertionResult* const insertion) {
+  // Null where it was filtered; empty where it comes from a remote builder.
+  if (insertion == nullptr || insertion->constant_data == nullptr ||
+      insertion->insertion_submaps.empty()) {
+    return;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const absl::MutexLock lock(&mutex_);
+  const auto found = trajectories_.find(trajectory_id);
+  if (is_shut_down_ || found == trajectories_.end() ||
+      found->second.is_finished) {
+    return;
+  }
+  Trajectory& trajectory = found->second;
+  const Eigen::Vector2d position =
+      insertion->constant_data->local_pose.translation().head<2>();
+  if (trajectory.position) {
+    trajectory.distance_driven += (position - *trajectory.position).norm();
+  }
+  trajectory.position = position;
+  FollowSubmaps(trajectory_id, *insertion, &trajectory);
+  if (trajectory.is_searched && has_map_) {
+    CollectScan(trajectory_id, range_data, *insertion, &trajectory);
+  }
+  const double seconds = SecondsSince(begin);
+  if (callback_seconds_.size() < kMaxNumDurations) {
+    callback_seconds_.push_back(static_cast<float>(seconds));
+  } else {
+    callback_seconds_[static_cast<size_t>(summary_.num_callbacks) %
+                      kMaxNumDurations] = static_cast<float>(seconds);
+  }
+  ++summary_.num_callbacks;
+  summary_.callback_mean_seconds +=
+      seconds;  // their sum, until it is asked for
+  summary_.callback_max_seconds =
+      std::max(summary_.callback_max_seconds, seconds);
+}
+
+void Searcher::FollowSubmaps(const int trajectory_id,
+                             const InsertionResult& insertion,
+                             Trajectory* const trajectory) {
+  const auto& submaps = insertion.insertion_submaps;
+  if (submaps.back().get() != trajectory->newest_submap) {
+    // As the pose graph numbers them.
+    const SubmapId id{trajectory_id, trajectory->num_submaps++};
+    trajectory->newest_submap = submaps.back().get();
+    trajectory->growing.push_back(id.index);
+    SubmapRecord& record = submaps_[id];
+    record.submap = submaps.back();
+    record.odometry.T_local_submap = FromHost(submaps.back()->local_pose());
+  }
+  const Rigid2 T_local_node = LocalNodePose(*insertion.constant_data);
+  while (trajectory->growing.size() > submaps.size()) {
+    trajectory->growing.erase(trajectory->growing.begin());
+  }
+  for (const int index : trajectory->growing) {
+    const auto found = submaps_.find({trajectory_id, index});
+    if (found == submaps_.end()) continue;
+    SubmapRecord& record = found->second;
+    record.nodes.push_back(
+        {FromHost(insertion.node_id),
+         record.odometry.T_local_submap.Inverse() * T_local_node,
+         insertion.constant_data});
+    record.sum_of_distances += trajectory->distance_driven;
+  }
+  if (submaps.front()->insertion_finished() && !trajectory->growing.empty()) {
+    ScheduleDescription({trajectory_id, trajectory->growing.front()});
+    trajectory->growing.erase(trajectory->growing.begin());
+  }
+}
+
+void Searcher::ScheduleDescription(const SubmapId& id) {
+  const auto found = submaps_.find(id);
+  if (found == submaps_.end() || found->second.is_scheduled) return;
+  SubmapRecord& record = found->second;
+  record.is_scheduled = true;
+  if (!record.nodes.empty()) {
+    record.odometry.distance_driven =
+        record.sum_of_distances / static_cast<double>(record.nodes.size());
+  }
+  record.nodes = ThinOut(options_.lifting, record.nodes);
+  worker_.Schedule([this, id] { DescribeAndRecognize(id); });
+}
+
+void Searcher::CollectScan(const int trajectory_id,
+                           const cartographer::sensor::RangeData& range_data,
+                           const InsertionResult& insertion,
+                           Trajectory* const trajectory) {
+  trajectory->scans.push_back({insertion.node_id, insertion.constant_data,
+                               range_data, trajectory->distance_driven});
+  if (trajectory->is_query_scheduled ||
+      trajectory->distance_driven < trajectory->next_query) {
+    return;
+  }
+  trajectory->is_query_scheduled = true;
+  worker_.Schedule([this, trajectory_id] { QueryLocation(trajectory_id); });
+}
+
+void Searcher::FinishTrajectory(const int trajectory_id,
+                                const std::function<void()>& forward) {
+  {
+    const Announcement announcement(this);
+    forward();
+  }
+  std::optional<LocalizationResult> ended;
+  {
+    const absl::MutexLock lock(&mutex_);
+    const auto found = trajectories_.find(trajectory_id);
+    if (is_shut_down_ || found == trajectories_.end() ||
+        found->second.is_finished) {
+      return;
+    }
+    Trajectory& trajectory = found->second;
+    trajectory.is_finished = true;
+    // From here on they don't change.
+    if (!trajectory.is_trimmed) {
+      for (const int index : trajectory.growing) {
+        ScheduleDescription({trajectory_id, index});
+      }
+    }
+    trajectory.growing.clear();
+    if (trajectory.is_searched && has_map_) {
+      trajectory.localization->reason = LocalizationReason::kFinished;
+      ended = trajectory.localization;
+      worker_.Schedule(
+          [this, trajectory_id] { search_.StopLocalizing(trajectory_id); });
+      if (on_localization_) {
+        worker_.Schedule([this, result = *ended] { on_localization_(result); });
+      }
+    }
+    trajectory.is_searched = false;
+    trajectory.scans.clear();
+  }
+  if (ended) {
+    CountLocalization(ended->reason);
+    LOG(INFO) << "trajectory " << trajectory_id
+              << " ended before it was located in the map";
+  }
+}
+
+void Searcher::ForgetTrajectory(const int trajectory_id) {
+  const absl::MutexLock lock(&mutex_);
+  std::vector<SubmapId> ids;
+  for (const auto& [id, record] : submaps_) {
+    if (id.trajectory == trajectory_id) ids.push_back(id);
+  }
+  for (const SubmapId& id : ids) ForgetSubmap(id);
+  // Those of growing submaps, which have no record.
+  ForgetSubmap({trajectory_id, kGrowingSubmapIndex});
+  const auto found = trajectories_.find(trajectory_id);
+  if (found == trajectories_.end()) return;
+  found->second.is_finished = true;
+  found->second.is_searched = false;
+  found->second.scans.clear();
+}
+
+void Searcher::ForgetSubmap(const SubmapId& id) {
+  gone_.insert(id);
+  submaps_.erase(id);
+  for (Closure& closure : closures_) {
+    const LoopClosure& found = closure.record.closure;
+    const bool is_waiting = closure.record.fate == ClosureFate::kPending ||
+                            closure.record.fate == ClosureFate::kContradicted ||
+                            closure.record.fate == ClosureFate::kReady;
+    if (is_waiting && (found.reference == id || found.query == id)) {
+      SetFate(ClosureFate::kGone, &closure);
+    }
+  }
+  worker_.Schedule([this, id] {
+    search_.Forget(id);
+    map_poses_.erase(id);
+    SetNumPlaces(static_cast<double>(search_.places().size()));
+    const absl::MutexLock lock(&mutex_);
+    summary_.num_places = static_cast<int>(search_.places().size());
+  });
+}
+
+void Searcher::SetFate(const ClosureFate fate, Closure* const closure) {
+  if (closure->record.fate == fate) return;
+  closure->record.fate = fate;
+  CountClosure(fate);
+  if (fate != ClosureFate::kReady) closure->constraints.clear();
+}
+
+void Searcher::LogClosure(const Closure& closure) const {
+  if (!options_.log_closures) return;
+  const LoopClosure& found = closure.record.closure;
+  LOG(INFO) << "closure of submap " << found.query << " with "
+            << found.reference << ": " << ClosureFateName(closure.record.fate)
+            << ", score " << found.score << ", " << found.evidence.inliers
+            << " inliers, overlap " << found.evidence.overlap << ", residual "
+            << found.evidence.residual << " m, "
+            << closure.record.num_constraints << " constraints";
+}
+
+void Searcher::OnStateLoaded(const std::map<int, int>& trajectory_ids,
+                             const bool is_frozen, const std::string& path) {
+  const absl::MutexLock lock(&mutex_);
+  if (is_shut_down_) return;
+  for (const auto& [id_in_file, id] : trajectory_ids) {
+    Trajectory& trajectory = trajectories_[id];
+    trajectory.is_loaded = true;
+    trajectory.is_frozen = is_frozen;
+  }
+  if (pose_graph_ == nullptr) return;
+  has_map_ = true;
+  for (auto& [id, trajectory] : trajectories_) {
+    // What was driven before does not count: its scans are not known.
+    if (trajectory.is_searched) BeginSearch(id, &trajectory);
+  }
+  worker_.Schedule([this, trajectory_ids, is_frozen, path] {
+    DescribeLoaded(trajectory_ids, is_frozen, path);
+  });
+}
+
+void Searcher::Shutdown() {
+  {
+    const absl::MutexLock lock(&mutex_);
+    if (is_shut_down_) return;
+    is_shut_down_ = true;
+  }
+  worker_.Stop();
+  const LiveSummary summary = GetSummary();
+  LOG(INFO) << "searched " << summary.num_submaps
+            << " submaps: " << summary.num_candidates << " candidates, "
+            << summary.num_closures << " closures, of which "
+            << summary.num_injected << " were injected as "
+            << summary.num_constraints << " constraints; "
+            << summary.worker_cpu_seconds << " s of the worker, at most "
+            << 1e3 * summary.callback_p99_seconds
+            << " ms added to 99 % of the local SLAM results";
+}
+
+bool Searcher::IsStopping() const {
+  const absl::MutexLock lock(&mutex_);
+  return is_shut_down_;
+}
+
+std::optional<LocalizationResult> Searcher::GetLocalization(
+    const int trajectory_id) const {
+  const absl::MutexLock lock(&mutex_);
+  const auto found = trajectories_.find(trajectory_id);
+  if (found == trajectories_.end()) return std::nullopt;
+  return found->second.localization;
+}
+
+void Searcher::Localize(const int trajectory_id) {
+  const absl::MutexLock lock(&mutex_);
+  const auto found = trajectories_.find(trajectory_id);
+  if (is_shut_down_ || found == trajectories_.end() || !found->second.is_live ||
+      found->second.is_finished) {
+    LOG(WARNING) << "trajectory " << trajectory_id
+                 << " is not active, and can't be located";
+    return;
+  }
+  BeginSearch(trajectory_id, &found->second);
+}
+
+LiveSummary Searcher::GetSummary() const {
+  const double cpu_seconds = worker_.CpuSeconds();
+  const absl::MutexLock lock(&mutex_);
+  LiveSummary summary = summary_;
+  summary.worker_cpu_seconds = cpu_seconds;
+  summary.num_closures = static_cast<int>(closures_.size());
+  if (summary.num_callbacks > 0) {
+    summary.callback_mean_seconds /= static_cast<double>(summary.num_callbacks);
+    std::vector<float> seconds = callback_seconds_;
+    const auto p99 = seconds.begin() + static_cast<std::ptrdiff_t>(
+                                           (seconds.size() - 1) * 99 / 100);
+    std::nth_element(seconds.begin(), p99, seconds.end());
+    summary.callback_p99_seconds = *p99;
+  }
+  return summary;
+}
+
+std::vector<ClosureRecord> Searcher::GetClosures() const {
+  const absl::MutexLock lock(&mutex_);
+  std::vector<ClosureRecord> records;
+  for (const Closure& closure : closures_) records.push_back(closure.record);
+  return records;
+}
+
+}  // namespace cartographer_sdf

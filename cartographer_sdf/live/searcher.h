@@ -1,0 +1,214 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The searcher beside a live pose graph: keeps the books of trajectories,
+// submaps and closures, gives the worker its tasks, and adds constraints when
+// that is safe (injection_gate.h).
+//
+// Threads: the host's sensor threads (OnLocalSlamResult), its pool threads
+// (EnterRound, with the host's mutex held), our worker (tasks), and whatever
+// thread calls the rest. Our mutex is taken with the host's mutex held, so no
+// method of the host's pose graph that takes its mutex is called with ours
+// held. AddSerializedConstraints takes another one, that of the queue, which
+// the host never holds while it calls us.
+
+#ifndef CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
+#define CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+#include "cartographer/mapping/pose_graph.h"
+#include "cartographer/mapping/pose_graph_trimmer.h"
+#include "cartographer/mapping/trajectory_builder_interface.h"
+#include "cartographer_sdf/live/background_search.h"
+#include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/live/injection_gate.h"
+#include "cartographer_sdf/live/live_options.h"
+#include "cartographer_sdf/live/map_builder.h"
+#include "cartographer_sdf/live/worker.h"
+
+namespace cartographer_sdf {
+
+class Searcher : public std::enable_shared_from_this<Searcher> {
+ public:
+  // The pose graph, null where it is remote, outlives everything but the hooks,
+  // which it owns.
+  Searcher(const LiveOptions& options,
+           cartographer::mapping::PoseGraph* pose_graph,
+           LocalizationCallback on_localization);
+
+  // Around what starts a round or adds a trimmer.
+  class Announcement {
+   public:
+    explicit Announcement(Searcher* searcher);
+    ~Announcement();
+    Announcement(const Announcement&) = delete;
+    Announcement& operator=(const Announcement&) = delete;
+
+   private:
+    Searcher* const searcher_;
+  };
+
+  void AddTrajectory(int trajectory_id, bool has_initial_pose, bool is_trimmed)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // On the sensor thread. `insertion` may be null.
+  void OnLocalSlamResult(
+      int trajectory_id, const cartographer::sensor::RangeData& range_data,
+      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult*
+          insertion) ABSL_LOCKS_EXCLUDED(mutex_);
+  void FinishTrajectory(int trajectory_id, const std::function<void()>& forward)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Before it is deleted.
+  void ForgetTrajectory(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // After a state was loaded. Trajectories by their ids in the file; `path` is
+  // empty where there is no file.
+  void OnStateLoaded(const std::map<int, int>& trajectory_ids, bool is_frozen,
+                     const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Waits for the worker, so that all that it finds takes part.
+  void RunFinalOptimization() ABSL_LOCKS_EXCLUDED(mutex_);
+  // The worker stops, and nothing is added to the pose graph any more.
+  void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // By hooks, with the host's mutex held.
+  void EnterRound(cartographer::mapping::Trimmable* graph, int generation)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] bool IsHookObsolete(int generation) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // As LiveMapBuilder.
+  [[nodiscard]] std::optional<LocalizationResult> GetLocalization(
+      int trajectory_id) const ABSL_LOCKS_EXCLUDED(mutex_);
+  void Localize(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  void WaitUntilIdle() { worker_.WaitUntilIdle(); }
+  [[nodiscard]] LiveSummary GetSummary() const ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] std::vector<ClosureRecord> GetClosures() const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  using HostSubmap = std::shared_ptr<const cartographer::mapping::Submap>;
+
+  struct SubmapRecord {
+    HostSubmap submap;  // until it is described
+    OdometryPose odometry;
+    // While it grows, all nodes; then those that are lifted.
+    std::vector<SubmapNode> nodes;
+    double sum_of_distances = 0.;
+    bool is_scheduled = false;
+  };
+  struct Trajectory {
+    bool is_live = false;    // nodes come through us
+    bool is_loaded = false;  // part of a map to be located in
+    bool is_frozen = false;
+    bool is_trimmed = false;  // its submaps go when it ends
+    bool is_finished = false;
+    int num_submaps = 0;
+    const cartographer::mapping::Submap* newest_submap = nullptr;
+    std::vector<int> growing;                 // indices of its submaps
+    std::optional<Eigen::Vector2d> position;  // local
+    double distance_driven = 0.;
+    // Being located.
+    bool is_searched = false;
+    bool is_restarted = false;  // the worker has to start anew
+    bool was_located = false;   // before this search
+    bool is_query_scheduled = false;
+    double search_begin = 0.;       // distance driven then
+    double next_query = 0.;         // distance driven
+    std::vector<PlacedScan> scans;  // not yet taken by the worker
+    std::optional<LocalizationResult> localization;
+  };
+  struct Closure {
+    ClosureRecord record;
+    std::vector<HostConstraint> constraints;
+  };
+  // Nodes of live trajectories, as a round shows them.
+  struct NodeCounts {
+    int64_t num_done = 0;
+    int64_t num_waiting = 0;
+  };
+
+  void Announce() ABSL_LOCKS_EXCLUDED(mutex_);
+  void Settle() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Parts of OnLocalSlamResult.
+  void FollowSubmaps(
+      int trajectory_id,
+      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult&
+          insertion,
+      Trajectory* trajectory) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void CollectScan(
+      int trajectory_id, const cartographer::sensor::RangeData& range_data,
+      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult&
+          insertion,
+      Trajectory* trajectory) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ScheduleDescription(const SubmapId& id)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void BeginSearch(int trajectory_id, Trajectory* trajectory)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ForgetSubmap(const SubmapId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void SetFate(ClosureFate fate, Closure* closure)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void LogClosure(const Closure& closure) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  [[nodiscard]] bool MayInject() const {
+    return options_.inject_constraints && pose_graph_ != nullptr;
+  }
+
+  // Parts of EnterRound.
+  NodeCounts CountNodes(const std::set<int>& live_trajectories,
+                        const std::set<int>& loaded_trajectories,
+                        const cartographer::mapping::Trimmable& graph);
+  std::vector<SubmapId> FindGone(const std::set<int>& live_trajectories,
+                                 const std::set<int>& loaded_trajectories,
+                                 const cartographer::mapping::Trimmable& graph);
+  // Those of ready closures whose submaps and nodes exist.
+  void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
+                   const std::function<bool(const NodeId&)>& has_node)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+
+  // Tasks of the worker.
+  void DescribeAndRecognize(const SubmapId& id) ABSL_LOCKS_EXCLUDED(mutex_);
+  void SelectAndLift(const SubmapId& newest) ABSL_LOCKS_EXCLUDED(mutex_);
+  void DescribeLoaded(const std::map<int, int>& trajectory_ids, bool is_frozen,
+                      const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
+  void QueryLocation(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  void RefreshMapPoses() ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] bool IsStopping() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+  const LiveOptions options_;
+  cartographer::mapping::PoseGraph* const pose_graph_;
+  const LocalizationCallback on_localization_;
+
+  mutable absl::Mutex mutex_;
+  bool is_shut_down_ ABSL_GUARDED_BY(mutex_) = false;
+  bool has_map_ ABSL_GUARDED_BY(mutex_) = false;
+  InjectionGate gate_ ABSL_GUARDED_BY(mutex_);
+  std::map<int, Trajectory> trajectories_ ABSL_GUARDED_BY(mutex_);
+  std::map<SubmapId, SubmapRecord> submaps_ ABSL_GUARDED_BY(mutex_);
+  std::vector<Closure> closures_ ABSL_GUARDED_BY(mutex_);
+  std::set<SubmapId> gone_ ABSL_GUARDED_BY(mutex_);
+  LiveSummary summary_ ABSL_GUARDED_BY(mutex_);
+  std::vector<float> callback_seconds_ ABSL_GUARDED_BY(mutex_);
+
+  // Of rounds alone, which the host's mutex keeps apart.
+  std::map<int, int> newest_node_done_;
+  std::map<int, std::set<int>> submaps_in_graph_;
+
+  // Of the worker's tasks alone.
+  BackgroundSearch search_;
+  std::map<SubmapId, Rigid2> map_poses_;  // of loaded submaps, T_map_submap
+  bool map_moves_ = false;                // not all of it is frozen
+
+  Worker worker_;  // last, so that it ends first
+};
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_LIVE_SEARCHER_H_

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// One thread of low priority that does what it is given, in order.
+
+#ifndef CARTOGRAPHER_SDF_LIVE_WORKER_H_
+#define CARTOGRAPHER_SDF_LIVE_WORKER_H_
+
+#include <deque>
+#include <functional>
+#include <thread>
+
+#include "absl/base/thread_annotations.h"
+#include "absl/synchronization/mutex.h"
+
+namespace cartographer_sdf {
+
+// Of the calling thread [s].
+[[nodiscard]] double ThreadCpuSeconds();
+
+class Worker {
+ public:
+  Worker();
+  ~Worker();
+
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  // Dropped after Stop.
+  void Schedule(std::function<void()> task) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Returns at once when called by a task, which would wait for itself.
+  void WaitUntilIdle() ABSL_LOCKS_EXCLUDED(mutex_);
+  // Finishes the running task, drops the others.
+  void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
+  // Of the tasks that are done.
+  [[nodiscard]] double CpuSeconds() const ABSL_LOCKS_EXCLUDED(mutex_);
+
+ private:
+  void Run() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  mutable absl::Mutex mutex_;
+  std::deque<std::function<void()>> tasks_ ABSL_GUARDED_BY(mutex_);
+  bool is_busy_ ABSL_GUARDED_BY(mutex_) = false;
+  bool is_stopping_ ABSL_GUARDED_BY(mutex_) = false;
+  double cpu_seconds_ ABSL_GUARDED_BY(mutex_) = 0.;
+  std::thread thread_;
+};
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_LIVE_WORKER_H_

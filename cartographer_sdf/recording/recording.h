@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// What a robot with wheels and a planar laser recorded, as plain data.
+
+#ifndef CARTOGRAPHER_SDF_RECORDING_RECORDING_H_
+#define CARTOGRAPHER_SDF_RECORDING_RECORDING_H_
+
+#include <vector>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+
+namespace cartographer_sdf {
+
+struct LaserScan {
+  // Seconds of Unix time.
+  double time = 0.;
+  // Where the wheels' odometry saw the robot; drifts.
+  Rigid2 T_odometry_robot;
+  // Of the beams in their order, not negative. Where nothing was hit, laser
+  // scanners report a range beyond their reach.
+  std::vector<double> ranges;
+};
+
+struct Recording {
+  // Direction of the first beam against the robot's, and from one beam to the
+  // next [rad]. The laser is taken to be in the middle of the robot.
+  double first_angle = 0.;
+  double angle_increment = 0.;
+  // In order of time, no two at the same time; all of one number of beams.
+  std::vector<LaserScan> scans;
+  // Scans of the file that are not here, because they were not later than the
+  // ones before.
+  int num_dropped_scans = 0;
+  // The times are the recording's own; else its scans were only counted.
+  bool has_clock = false;
+};
+
+// The scans from `start` seconds after the first one on, for `duration`
+// seconds.
+[[nodiscard]] Recording Cut(const Recording& recording, double start,
+                            double duration);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_RECORDING_RECORDING_H_

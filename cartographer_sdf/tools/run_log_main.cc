@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// cartographer_sdf_run_log: the way to try the searcher without ROS.
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "cartographer_sdf/live/host_options.h"
+#include "cartographer_sdf/live/live_options.h"
+#include "cartographer_sdf/live/log_run.h"
+#include "cartographer_sdf/recording/carmen_log.h"
+#include "cartographer_sdf/tools/command_line.h"
+#include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/progress.h"
+#include "cartographer_sdf/tools/run_log_report.h"
+#include "cartographer_sdf/tools/subcommand.h"
+#include "gflags/gflags.h"
+#include "glog/logging.h"
+
+DEFINE_string(log, "", "The recording, a CARMEN log, plain or gzip.");
+DEFINE_string(
+    configuration_directories, "",
+    "Directories of configuration files, separated by commas, searched before "
+    "those that come with this program and with Cartographer.");
+DEFINE_string(
+    sdf_configuration_basename, "sdf_live.lua",
+    "The searcher's configuration file. If empty, Cartographer runs alone.");
+DEFINE_double(start, 0., "Seconds of the recording to leave out.");
+DEFINE_double(duration, 0.,
+              "Seconds of the recording to drive; 0 for all that there are.");
+DEFINE_double(
+    real_time_factor, 0.,
+    "Seconds of the recording that pass in one; 1 for real time. 0 for as fast "
+    "as Cartographer and the searcher can.");
+DEFINE_double(field_of_view, 0.,
+              "Of the laser [degrees]. 0 for the usual one of so many beams: "
+              "180 for 180, 181 and 360 beams, 270 for others.");
+DEFINE_double(seconds_per_scan, 0.1,
+              "Time between the scans of a recording without a clock [s].");
+DEFINE_bool(verbose, false, "Whether what Cartographer logs is shown.");
+
+namespace cartographer_sdf {
+namespace {
+
+constexpr char kProgram[] = "cartographer_sdf_run_log";
+constexpr size_t kMaxMessageLength = 400;
+
+std::string OneLine(std::string text) {
+  for (char& c : text) {
+    if (absl::ascii_iscntrl(static_cast<unsigned char>(c))) c = ' ';
+  }
+  if (text.size() > kMaxMessageLength) {
+    text.resize(kMaxMessageLength);
+    text += "...";
+  }
+  return text;
+}
+
+// Cartographer stops the process where something is wrong with its files: that
+// is the world at fault, to be told in one line, and no reason for a core dump.
+class MessageSink : public google::LogSink {
+ public:
+  void send(const google::LogSeverity severity, const char* const,
+            const char* const file, const int line, const ::tm* const,
+            const char* const message, const size_t length) override {
+    const std::string text = OneLine(std::string(message, length));
+    if (severity == google::GLOG_FATAL) {
+      std::cerr << kProgram << ": " << text << std::endl;
+      _exit(1);
+    }
+    if (severity >= google::GLOG_ERROR || FLAGS_verbose) {
+      std::cerr << absl::StrCat(google::GetLogSeverityName(severity), " ", file,
+                                ":", line, "] ", text, "\n");
+    }
+  }
+};
+
+std::optional<double> GivenUnlessZero(const double value) {
+  if (value == 0.) return std::nullopt;
+  return value;
+}
+
+std::optional<std::string> GivenUnlessEmpty(const std::string& value) {
+  if (value.empty()) return std::nullopt;
+  return value;
+}
+
+absl::StatusOr<std::vector<std::string>> Directories() {
+  std::vector<std::string> directories =
+      absl::StrSplit(FLAGS_configuration_directories, ',', absl::SkipEmpty());
+  for (const std::string& directory : directories) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(directory, ignored)) {
+      return absl::NotFoundError(absl::StrCat(
+          "--configuration_directories: ", directory, " is no directory"));
+    }
+  }
+  const std::vector<std::string> ours = ConfigurationDirectories();
+  directories.insert(directories.end(), ours.begin(), ours.end());
+  return directories;
+}
+
+absl::StatusOr<LogRunOptions> OptionsOfFlags() {
+  const absl::StatusOr<std::vector<std::string>> directories = Directories();
+  if (!directories.ok()) return directories.status();
+  LogRunOptions options;
+  options.live.enabled = false;
+  if (!FLAGS_sdf_configuration_basename.empty()) {
+    const absl::StatusOr<LiveOptions> live =
+        LoadLiveOptions(*directories, FLAGS_sdf_configuration_basename);
+    if (!live.ok()) return live.status();
+    options.live = *live;
+  }
+  const absl::StatusOr<HostOptions> host =
+      LoadHostOptions(*directories, FLAGS_configuration_basename);
+  if (!host.ok()) return host.status();
+  options.host = *host;
+  options.map_path = GivenUnlessEmpty(FLAGS_map);
+  options.output_path = GivenUnlessEmpty(FLAGS_output);
+  options.real_time_factor = GivenUnlessZero(FLAGS_real_time_factor);
+  return options;
+}
+
+absl::StatusOr<Recording> RecordingOfFlags() {
+  CarmenLogOptions options;
+  if (FLAGS_field_of_view != 0.) {
+    options.field_of_view = FLAGS_field_of_view * M_PI / 180.;
+  }
+  options.seconds_per_scan = FLAGS_seconds_per_scan;
+  if (const std::string problem = Validate(options); !problem.empty()) {
+    return UsageError(absl::StrCat("--", problem));
+  }
+  absl::StatusOr<Recording> recording = ReadCarmenLog(FLAGS_log, options);
+  if (!recording.ok()) return recording.status();
+  const double duration = FLAGS_duration > 0.
+                              ? FLAGS_duration
+                              : std::numeric_limits<double>::infinity();
+  return Cut(*recording, FLAGS_start, duration);
+}
+
+// The report draws the map of a file; one of its own where there is no output.
+class ReportedMap {
+ public:
+  explicit ReportedMap(LogRunOptions* const options) {
+    if (options->output_path.has_value() || FLAGS_report.empty()) {
+      path_ = options->output_path.value_or("");
+      return;
+    }
+    path_ = (std::filesystem::temp_directory_path() /
+             absl::StrCat(kProgram, "-", getpid(), ".pbstream"))
+                .string();
+    is_temporary_ = true;
+    options->output_path = path_;
+  }
+  ReportedMap(const ReportedMap&) = delete;
+  ReportedMap& operator=(const ReportedMap&) = delete;
+  ~ReportedMap() {
+    std::error_code ignored;
+    if (is_temporary_) std::filesystem::remove(path_, ignored);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  bool is_temporary_ = false;
+};
+
+absl::Status RunLogOfFlags() {
+  if (!(FLAGS_start >= 0.) || !(FLAGS_duration >= 0.)) {
+    return UsageError("--start and --duration must not be negative");
+  }
+  if (!(FLAGS_real_time_factor >= 0.)) {
+    return UsageError("--real_time_factor must not be negative");
+  }
+  absl::StatusOr<LogRunOptions> options = OptionsOfFlags();
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<Recording> recording = RecordingOfFlags();
+  if (!recording.ok()) return recording.status();
+  const ReportedMap map(&*options);
+  absl::StatusOr<LogRunResult> result;
+  {
+    Progress progress("run");
+    result = RunLog(*recording, *options, progress.Callback());
+  }
+  if (!result.ok()) return result.status();
+  if (!FLAGS_report.empty()) {
+    if (absl::Status status = WriteRunReport(FLAGS_report, FLAGS_log,
+                                             map.path(), *options, *result);
+        !status.ok()) {
+      return status;
+    }
+  }
+  std::cout << FormatRunSummary(*result);
+  return absl::OkStatus();
+}
+
+Subcommand RunLogCommand() {
+  return Subcommand{
+      "",
+      "drive a recording through Cartographer with the searcher around it",
+      "--log drive.log.gz --configuration_basename run_log_mapping.lua "
+      "[--map A.pbstream] [--output B.pbstream] [--report DIR]",
+      "A stock Cartographer gets the laser, odometry and yaw rates of the log, "
+      "as from a robot; between sparse scans, odometry and yaw rates are "
+      "interpolated. The searcher recognises places and adds constraints; with "
+      "--map it locates the robot in a frozen map.\n\n"
+      "The summary goes to the standard output, the map to --output. --report "
+      "gets index.html to read, run.json and nodes.csv for programs.",
+      {"log", "configuration_basename"},
+      {"configuration_directories", "sdf_configuration_basename", "map",
+       "output", "report", "start", "duration", "real_time_factor",
+       "field_of_view", "seconds_per_scan", "verbose"},
+      &RunLogOfFlags,
+      kProgram};
+}
+
+}  // namespace
+}  // namespace cartographer_sdf
+
+int main(int argc, char** argv) {
+  google::InitGoogleLogging(argc > 0 ? argv[0] : cartographer_sdf::kProgram);
+  // All messages go to the sink alone, none to files.
+  FLAGS_stderrthreshold = google::NUM_SEVERITIES;
+  for (int severity = 0; severity < google::NUM_SEVERITIES; ++severity) {
+    google::SetLogDestination(severity, "");
+  }
+  cartographer_sdf::MessageSink sink;
+  google::AddLogSink(&sink);
+  const int exit_code = cartographer_sdf::RunSubcommand(
+      cartographer_sdf::RunLogCommand(),
+      std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  google::RemoveLogSink(&sink);
+  return exit_code;
+}

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_TOOLS_RUN_LOG_REPORT_H_
+#define CARTOGRAPHER_SDF_TOOLS_RUN_LOG_REPORT_H_
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "cartographer_sdf/live/log_run.h"
+
+namespace cartographer_sdf {
+
+// A few lines for a terminal.
+[[nodiscard]] std::string FormatRunSummary(const LogRunResult& result);
+
+// `directory` gets
+// - run.json: all numbers, see docs/live.md;
+// - nodes.csv: what was believed when each node was made;
+// - index.html: the final map with closures, and charts. Reads the grids of
+//   `map`, the map at the end.
+[[nodiscard]] absl::Status WriteRunReport(const std::string& directory,
+                                          const std::string& log,
+                                          const std::string& map,
+                                          const LogRunOptions& options,
+                                          const LogRunResult& result);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_TOOLS_RUN_LOG_REPORT_H_

@@ -1,0 +1,380 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/live/map_builder.h"
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/synchronization/mutex.h"
+#include "absl/time/clock.h"
+#include "absl/time/time.h"
+#include "cartographer/mapping/pose_graph.h"
+#include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/simulation/drive.h"
+#include "cartographer_sdf/simulation/office.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/live/host.h"
+#include "test/testing/temporary_directory.h"
+
+namespace cartographer_sdf {
+namespace {
+
+namespace mapping = cartographer::mapping;
+using testing::FeedOdometry;
+using testing::FeedScan;
+using testing::MakeStockOptions;
+using testing::SensorIds;
+using ::testing::SizeIs;
+
+// Cartographer does without loop closing of its own, and optimises often. Its
+// prediction lags behind turns where it has no IMU, hence its search.
+constexpr char kWithoutOwnSearch[] =
+    "TRAJECTORY_BUILDER_2D.use_online_correlative_scan_matching = true\n"
+    "POSE_GRAPH.constraint_builder.sampling_ratio = 0.\n"
+    "POSE_GRAPH.global_sampling_ratio = 0.\n"
+    "POSE_GRAPH.optimize_every_n_nodes = 5\n"
+    "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 30\n";
+// Between two scans, so that the motion filter keeps each.
+constexpr double kStep = 0.25;     // [m]
+constexpr double kTimeStep = 0.5;  // [s]
+
+struct Building {
+  FloorPlan plan;
+  std::vector<Rigid2> poses;  // T_world_robot, a step apart
+};
+
+// A round trip, and parts of it again.
+const Building& TheBuilding() {
+  static const Building* const instance = [] {
+    auto* const building = new Building;
+    building->plan = MakeOffice(OfficeOptions(), 3);
+    DriveOptions drive;
+    drive.length = 130.;
+    const auto driven = Drive(building->plan, drive, 5);
+    CHECK(driven.ok()) << driven.status();
+    for (const DrivenPose& pose : *driven) {
+      const Rigid2& T_world_robot = pose.T_world_robot;
+      if (building->poses.empty() ||
+          (building->poses.back().translation() - T_world_robot.translation())
+                  .norm() >= kStep ||
+          std::abs(
+              (building->poses.back().Inverse() * T_world_robot).rotation()) >=
+              0.1) {
+        building->poses.push_back(T_world_robot);
+      }
+    }
+    return building;
+  }();
+  return *instance;
+}
+
+class Robot {
+ public:
+  Robot(mapping::MapBuilderInterface* const map_builder,
+        const int trajectory_id, const unsigned seed)
+      : map_builder_(map_builder),
+        trajectory_id_(trajectory_id),
+        random_(seed) {}
+
+  // `stop` returns whether it is enough.
+  void Drive(const std::vector<Rigid2>& poses,
+             const std::function<bool()>& stop = {}) {
+    LidarOptions lidar;
+    lidar.num_beams = 240;
+    for (const Rigid2& T_world_robot : poses) {
+      seconds_ += kTimeStep;
+      // Odometry starts anywhere; here it is that good, and that dense, that
+      // the map is as the building.
+      if (!T_world_odometry_) T_world_odometry_ = T_world_robot;
+      const Rigid2 T_odometry_robot =
+          T_world_odometry_->Inverse() * T_world_robot;
+      constexpr int kNumOdometry = 10;
+      const Rigid2 moved = T_odometry_previous_.Inverse() * T_odometry_robot;
+      for (int k = 1; k <= kNumOdometry; ++k) {
+        const double fraction = static_cast<double>(k) / kNumOdometry;
+        FeedOdometry(
+            map_builder_, trajectory_id_,
+            seconds_ + (fraction - 1.) * kTimeStep,
+            T_odometry_previous_ * Rigid2(fraction * moved.translation(),
+                                          fraction * moved.rotation()));
+      }
+      T_odometry_previous_ = T_odometry_robot;
+      FeedScan(
+          map_builder_, trajectory_id_, seconds_,
+          TakeScan(TheBuilding().plan, {}, T_world_robot, lidar, &random_));
+      if (stop && stop()) return;
+    }
+  }
+
+ private:
+  mapping::MapBuilderInterface* const map_builder_;
+  const int trajectory_id_;
+  RandomNumbers random_;
+  double seconds_ = 0.;
+  std::optional<Rigid2> T_world_odometry_;
+  Rigid2 T_odometry_previous_;
+};
+
+// The host drops the first scan, which is its frame nevertheless, and some of
+// the others.
+Rigid2 TruePose(const mapping::TrajectoryNode& node) {
+  const double seconds =
+      cartographer::common::ToSeconds(node.time() - testing::TimeOf(0.));
+  return TheBuilding().poses.at(
+      static_cast<size_t>(std::lround(seconds / kTimeStep)) - 1);
+}
+
+bool IsNear(const Rigid2& a, const Rigid2& b, const double meters,
+            const double radians) {
+  const Rigid2 T_a_b = a.Inverse() * b;
+  return T_a_b.translation().norm() <= meters &&
+         std::abs(T_a_b.rotation()) <= radians;
+}
+
+void ExpectNear(const Rigid2& a, const Rigid2& b, const double meters,
+                const double radians) {
+  const Rigid2 T_a_b = a.Inverse() * b;
+  EXPECT_LE(T_a_b.translation().norm(), meters) << a << " and " << b;
+  EXPECT_LE(std::abs(T_a_b.rotation()), radians) << a << " and " << b;
+}
+
+TEST(MapBuilderTest, DisabledItIsTheHostItself) {
+  auto host = mapping::CreateMapBuilder(MakeStockOptions("").map_builder);
+  auto* const address = host.get();
+  LiveOptions options;
+  options.enabled = false;
+  const auto map_builder = CreateMapBuilder(std::move(host), options);
+  EXPECT_EQ(map_builder.get(), address);
+  EXPECT_EQ(AsLiveMapBuilder(map_builder.get()), nullptr);
+}
+
+TEST(MapBuilderTest, ClosesLoops) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  const auto map_builder = CreateMapBuilder(
+      mapping::CreateMapBuilder(stock.map_builder), LiveOptions());
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  ASSERT_NE(live, nullptr);
+  // The user's own callback is served, too.
+  int num_results = 0;
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder,
+      [&num_results](
+          int, cartographer::common::Time, cartographer::transform::Rigid3d,
+          cartographer::sensor::RangeData,
+          std::unique_ptr<
+              const mapping::TrajectoryBuilderInterface::InsertionResult>) {
+        ++num_results;
+      });
+  const std::vector<Rigid2>& poses = TheBuilding().poses;
+  Robot robot(map_builder.get(), trajectory_id, 1);
+  robot.Drive(poses);
+  map_builder->FinishTrajectory(trajectory_id);
+  map_builder->pose_graph()->RunFinalOptimization();
+  EXPECT_GE(num_results, static_cast<int>(poses.size()) - 1);
+
+  const LiveSummary summary = live->GetSummary();
+  // All are indexed, those that were left unfinished as well.
+  const auto submaps = map_builder->pose_graph()->GetAllSubmapData();
+  EXPECT_EQ(summary.num_submaps, static_cast<int>(submaps.size()));
+  EXPECT_GE(summary.num_injected, 3);
+  EXPECT_LT(summary.callback_p99_seconds, 1e-3);
+  int num_inter = 0;
+  double sum_of_errors = 0.;
+  const auto nodes = map_builder->pose_graph()->GetTrajectoryNodes();
+  const auto constraints = map_builder->pose_graph()->constraints();
+  for (const auto& constraint : constraints) {
+    if (constraint.tag != HostConstraint::INTER_SUBMAP) continue;
+    ++num_inter;
+    // Seen from that node of the submap which was nearest: submaps bend.
+    const Rigid2& T_world_node = TruePose(nodes.at(constraint.node_id));
+    std::optional<Rigid2> T_submap_nearest, T_nearest_node;
+    for (const auto& other : constraints) {
+      if (other.tag != HostConstraint::INTRA_SUBMAP ||
+          other.submap_id != constraint.submap_id) {
+        continue;
+      }
+      const Rigid2 T_other_node =
+          TruePose(nodes.at(other.node_id)).Inverse() * T_world_node;
+      if (T_nearest_node && T_nearest_node->translation().norm() <=
+                                T_other_node.translation().norm()) {
+        continue;
+      }
+      T_nearest_node = T_other_node;
+      T_submap_nearest = FromHost(other.pose.zbar_ij);
+    }
+    ASSERT_TRUE(T_nearest_node);
+    const Rigid2 T_submap_node = *T_submap_nearest * *T_nearest_node;
+    ExpectNear(FromHost(constraint.pose.zbar_ij), T_submap_node, 0.5, 0.06);
+    sum_of_errors += (FromHost(constraint.pose.zbar_ij).translation() -
+                      T_submap_node.translation())
+                         .norm();
+  }
+  EXPECT_LT(sum_of_errors, 0.15 * num_inter);
+  EXPECT_EQ(num_inter, summary.num_constraints);
+  EXPECT_GT(num_inter, 10);
+}
+
+TEST(MapBuilderTest, DetectsWithoutInjectingOnRequest) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  LiveOptions options;
+  options.inject_constraints = false;
+  const auto map_builder =
+      CreateMapBuilder(mapping::CreateMapBuilder(stock.map_builder), options);
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  Robot robot(map_builder.get(), trajectory_id, 1);
+  robot.Drive(TheBuilding().poses);
+  map_builder->FinishTrajectory(trajectory_id);
+  map_builder->pose_graph()->RunFinalOptimization();
+  EXPECT_GE(live->GetSummary().num_closures, 3);
+  EXPECT_EQ(live->GetSummary().num_constraints, 0);
+  for (const auto& constraint : map_builder->pose_graph()->constraints()) {
+    EXPECT_EQ(constraint.tag, HostConstraint::INTRA_SUBMAP);
+  }
+}
+
+class LocalizationTest : public ::testing::Test {
+ protected:
+  // The map's frame is that of the first pose.
+  static void SetUpTestSuite() {
+    directory_ = new testing::TemporaryDirectory;
+    const auto stock = MakeStockOptions(kWithoutOwnSearch);
+    const auto map_builder = mapping::CreateMapBuilder(stock.map_builder);
+    const int trajectory_id = map_builder->AddTrajectoryBuilder(
+        SensorIds(), stock.trajectory_builder, nullptr);
+    Robot robot(map_builder.get(), trajectory_id, 1);
+    const std::vector<Rigid2>& poses = TheBuilding().poses;
+    robot.Drive({poses.begin(), poses.begin() + NumMapped()});
+    map_builder->FinishTrajectory(trajectory_id);
+    map_builder->pose_graph()->RunFinalOptimization();
+    ASSERT_TRUE(map_builder->SerializeStateToFile(true, MapPath()));
+  }
+  static void TearDownTestSuite() { delete directory_; }
+  static std::ptrdiff_t NumMapped() {
+    return static_cast<std::ptrdiff_t>(TheBuilding().poses.size() * 4 / 9);
+  }
+  static std::string MapPath() { return directory_->path() + "/map.pbstream"; }
+  static Rigid2 TrueMapPose(const Rigid2& T_world_robot) {
+    return TheBuilding().poses.front().Inverse() * T_world_robot;
+  }
+
+  static testing::TemporaryDirectory* directory_;
+};
+testing::TemporaryDirectory* LocalizationTest::directory_ = nullptr;
+
+TEST_F(LocalizationTest, LocatesFromAnyYaw) {
+  const std::vector<Rigid2>& all = TheBuilding().poses;
+  for (const bool is_frozen : {true, false}) {
+    for (const bool is_reversed : {false, true}) {
+      const auto stock = MakeStockOptions(kWithoutOwnSearch);
+      absl::Mutex mutex;
+      std::vector<LocalizationResult> results;
+      const auto map_builder = CreateMapBuilder(
+          mapping::CreateMapBuilder(stock.map_builder), LiveOptions(),
+          [&mutex, &results](const LocalizationResult& result) {
+            const absl::MutexLock lock(&mutex);
+            results.push_back(result);
+          });
+      LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+      const auto ids = map_builder->LoadStateFromFile(MapPath(), is_frozen);
+      ASSERT_THAT(ids, SizeIs(1));
+      const int trajectory_id = map_builder->AddTrajectoryBuilder(
+          SensorIds(), stock.trajectory_builder, nullptr);
+      // From the middle of the round trip on, as driven or looking back.
+      std::vector<Rigid2> poses(all.begin() + NumMapped() / 2,
+                                all.begin() + NumMapped() / 2 + 80);
+      if (is_reversed) {
+        std::reverse(poses.begin(), poses.end());
+        for (Rigid2& pose : poses) pose = pose * Rigid2(0., 0., M_PI);
+      }
+      live->WaitUntilIdle();
+      Robot robot(map_builder.get(), trajectory_id, 7);
+      size_t num_driven = 0;
+      std::optional<size_t> num_until_located;
+      robot.Drive(poses, [&] {
+        ++num_driven;
+        live->WaitUntilIdle();
+        if (!num_until_located &&
+            live->GetLocalization(trajectory_id)->located) {
+          num_until_located = num_driven;
+        }
+        if (!num_until_located) return false;
+        // Until the constraints are there, and used. A robot would take longer.
+        absl::SleepFor(absl::Milliseconds(50));
+        return IsNear(
+            FromHost(map_builder->pose_graph()->GetLocalToGlobalTransform(
+                trajectory_id)),
+            TrueMapPose(poses.front()), 0.3, 0.05);
+      });
+      ASSERT_TRUE(num_until_located) << LocalizationReasonName(
+          live->GetLocalization(trajectory_id)->reason);
+      const LocalizationResult result = *live->GetLocalization(trajectory_id);
+      EXPECT_EQ(result.reason, LocalizationReason::kLocated);
+      EXPECT_GE(result.num_queries, 2);
+      EXPECT_LT(result.distance_driven, 10.);
+      ExpectNear(*result.T_map_local, TrueMapPose(poses.front()), 0.3, 0.05);
+      {
+        const absl::MutexLock lock(&mutex);
+        ASSERT_THAT(results, SizeIs(1));
+        EXPECT_TRUE(results.front().located);
+      }
+      // The pose graph has been told, and agrees.
+      EXPECT_GE(live->GetSummary().num_injected, 1);
+      ExpectNear(FromHost(map_builder->pose_graph()->GetLocalToGlobalTransform(
+                     trajectory_id)),
+                 TrueMapPose(poses.front()), 0.3, 0.05);
+      // Kidnapped, as it may think.
+      live->Localize(trajectory_id);
+      EXPECT_FALSE(live->GetLocalization(trajectory_id)->located);
+      map_builder->FinishTrajectory(trajectory_id);
+      // While the loaded map's places are read from the file that was left.
+      EXPECT_TRUE(std::ifstream(MapPath() + ".places").good());
+    }
+  }
+}
+
+TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  const auto map_builder = CreateMapBuilder(
+      mapping::CreateMapBuilder(stock.map_builder), LiveOptions());
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
+            LocalizationReason::kNoMap);
+  EXPECT_FALSE(live->GetLocalization(17));
+  map_builder->LoadStateFromFile(MapPath(), true);
+  live->WaitUntilIdle();
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
+            LocalizationReason::kNotEnoughSeen);
+  // A corridor without ends is everywhere and nowhere.
+  Scan corridor;
+  for (int k = -40; k <= 40; ++k) {
+    const float x = 0.1f * static_cast<float>(k);
+    corridor.returns.emplace_back(x, 0.9f);
+    corridor.returns.emplace_back(x, -0.9f);
+  }
+  for (int k = 0; k < 20; ++k) {
+    FeedOdometry(map_builder.get(), trajectory_id, 0.5 * k,
+                 Rigid2(kStep * k, 0., 0.));
+    FeedScan(map_builder.get(), trajectory_id, 0.5 * k, corridor);
+    live->WaitUntilIdle();
+  }
+  const LocalizationResult result = *live->GetLocalization(trajectory_id);
+  EXPECT_FALSE(result.located);
+  EXPECT_GE(result.num_queries, 3);
+  EXPECT_NE(result.reason, LocalizationReason::kNotEnoughSeen);
+  map_builder->FinishTrajectory(trajectory_id);
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
+            LocalizationReason::kFinished);
+}
+
+}  // namespace
+}  // namespace cartographer_sdf

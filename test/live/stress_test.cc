@@ -1,0 +1,286 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Everything that may take a submap or a node away, at random and all at once,
+// while as many constraints as possible are added, most of them wrong. The host
+// aborts the process where one comes too late. Submaps are cheap: two scans of
+// a small room each. SDF_STRESS_NODES=20000 drives for longer.
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "cartographer/mapping/pose_graph.h"
+#include "cartographer/mapping/pose_graph_trimmer.h"
+#include "cartographer_sdf/live/map_builder.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/live/host.h"
+#include "test/testing/random_number.h"
+#include "test/testing/temporary_directory.h"
+
+namespace cartographer_sdf {
+namespace {
+
+namespace mapping = cartographer::mapping;
+using testing::FeedOdometry;
+using testing::FeedScan;
+using testing::MakeStockOptions;
+using testing::SensorIds;
+using testing::UniformInt;
+
+int NumNodes() {
+  constexpr int kDefault = 600;
+  const char* const text = std::getenv("SDF_STRESS_NODES");
+  return text == nullptr ? kDefault : std::atoi(text);
+}
+
+// A room without symmetry, seen from a place within.
+Scan ScanOfARoom(const Rigid2& T_room_robot) {
+  constexpr float kStep = 0.12f;
+  Scan scan;
+  const Rigid2 T_robot_room = T_room_robot.Inverse();
+  const auto add = [&](const float x, const float y) {
+    scan.returns.push_back(
+        (T_robot_room * Eigen::Vector2d(x, y)).cast<float>());
+  };
+  for (float t = 0.f; t < 6.f; t += kStep) {
+    add(t, 0.f);
+    if (t < 5.f) add(0.f, t);
+    if (t < 3.f) {
+      add(6.f, t);
+      add(3.f + t, 3.f);
+      add(t, 5.f);
+    }
+    if (t < 2.f) add(3.f, 3.f + t);
+  }
+  return scan;
+}
+
+LiveOptions EagerOptions() {
+  LiveOptions options;
+  options.log_closures = false;
+  options.min_index_gap = 1;
+  options.retrieval.min_num_candidates = 3;
+  options.retrieval.max_num_candidates = 3;
+  VerificationOptions& verification = options.match.verification;
+  verification.min_overlap_area = 0.5;
+  verification.min_score = -1000.;
+  verification.min_margin = 0.;
+  verification.min_scatter_eigenvalue = 0.;
+  options.consistency.min_unsupported_score = -1000.;
+  options.lifting.min_hit_ratio = 0.1;
+  options.localization.max_num_candidates = 3;
+  options.localization.min_score = -1000.;
+  options.localization.min_lead = 0.;
+  options.localization.min_num_queries = 1;
+  options.localization.query_interval_meters = 0.1;
+  options.localization.window_meters = 1.;
+  options.localization.resolution_meters = 0.1;
+  return options;
+}
+
+// Trims whatever it may, now and then: other people's trimmer.
+class RandomTrimmer : public mapping::PoseGraphTrimmer {
+ public:
+  explicit RandomTrimmer(const unsigned seed) : engine_(seed) {}
+  void Trim(mapping::Trimmable* const graph) override {
+    ++num_calls_;
+    const auto submaps = graph->GetOptimizedSubmapData();
+    for (const auto& submap : submaps) {
+      // The newest of a trajectory stays: the host refers the whole trajectory
+      // to it, trimmed or not, and would abort by itself.
+      if (UniformInt(4, &engine_) == 0 &&
+          graph->GetSubmapIds(submap.id.trajectory_id).back() != submap.id) {
+        graph->TrimSubmap(submap.id);
+      }
+    }
+  }
+  bool IsFinished() override { return num_calls_ > 30; }
+
+ private:
+  std::mt19937 engine_;
+  int num_calls_ = 0;
+};
+
+class StressTest : public ::testing::Test {
+ protected:
+  void AddTrajectory(const bool is_trimmed) {
+    auto options = stock_.trajectory_builder;
+    if (is_trimmed) {
+      options.mutable_pure_localization_trimmer()->set_max_submaps_to_keep(3);
+    }
+    const int id =
+        map_builder_->AddTrajectoryBuilder(SensorIds(), options, nullptr);
+    robots_.push_back({id, is_trimmed, UniformInt(100, &engine_) * 0.0628, 0});
+  }
+
+  void Step(const size_t k) {
+    Robot& robot = robots_[k];
+    // Round and round.
+    const double angle = robot.phase + 0.1 * robot.num_scans;
+    const Rigid2 T_room_robot(1.5 + 0.7 * std::cos(angle),
+                              1.5 + 0.7 * std::sin(angle), angle);
+    FeedOdometry(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
+                 T_room_robot);
+    FeedScan(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
+             ScanOfARoom(T_room_robot));
+    ++robot.num_scans;
+  }
+
+  void Finish(const size_t k) {
+    const Robot robot = robots_[k];
+    robots_.erase(robots_.begin() + static_cast<std::ptrdiff_t>(k));
+    map_builder_->FinishTrajectory(robot.trajectory_id);
+    // Those with a trimmer of their own go by themselves.
+    if (!robot.is_trimmed) finished_.push_back(robot.trajectory_id);
+  }
+
+  void Delete() {
+    const size_t k = static_cast<size_t>(
+        UniformInt(static_cast<int>(finished_.size()), &engine_));
+    const int id = finished_[k];
+    // The host aborts by itself where the end has not reached its queue.
+    using State = mapping::PoseGraphInterface::TrajectoryState;
+    if (map_builder_->pose_graph()->GetTrajectoryStates()[id] !=
+        State::FINISHED) {
+      return;
+    }
+    finished_.erase(finished_.begin() + static_cast<std::ptrdiff_t>(k));
+    map_builder_->pose_graph()->DeleteTrajectory(id);
+  }
+
+  struct Robot {
+    int trajectory_id;
+    bool is_trimmed;
+    double phase;
+    int num_scans;
+  };
+  std::mt19937 engine_{42};
+  testing::StockOptions stock_;
+  std::unique_ptr<mapping::MapBuilderInterface> map_builder_;
+  std::vector<Robot> robots_;
+  std::vector<int> finished_;
+};
+
+// What all hosts of the test share: submaps of two scans, and rounds as often
+// as `every_n_nodes` says.
+std::string StressLua(const int every_n_nodes, const bool trims_overlapping) {
+  std::string lines =
+      "MAP_BUILDER.collate_by_trajectory = true\n"
+      "POSE_GRAPH.constraint_builder.sampling_ratio = 0.02\n"
+      "POSE_GRAPH.global_sampling_ratio = 0.\n"
+      "POSE_GRAPH.constraint_builder.min_score = 0.9\n"
+      "POSE_GRAPH.optimization_problem.ceres_solver_options."
+      "max_num_iterations = 3\n"
+      "POSE_GRAPH.max_num_final_iterations = 3\n"
+      "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 2\n"
+      "TRAJECTORY_BUILDER_2D.submaps.grid_options_2d.resolution = 0.1\n"
+      "TRAJECTORY_BUILDER_2D.ceres_scan_matcher.ceres_solver_options."
+      "max_num_iterations = 3\n"
+      "TRAJECTORY_BUILDER_2D.motion_filter.max_distance_meters = 0.01\n"
+      "POSE_GRAPH.optimize_every_n_nodes = " +
+      std::to_string(every_n_nodes) + "\n";
+  if (trims_overlapping) {
+    lines +=
+        "POSE_GRAPH.overlapping_submaps_trimmer_2d = { fresh_submaps_count = "
+        "4, min_covered_area = 1., min_added_submaps_count = 4 }\n";
+  }
+  return lines;
+}
+
+TEST_F(StressTest, NeverAbortsTheHost) {
+  testing::TemporaryDirectory directory;
+  // A map to be loaded.
+  stock_ = MakeStockOptions(StressLua(3, false));
+  map_builder_ = mapping::CreateMapBuilder(stock_.map_builder);
+  AddTrajectory(false);
+  for (int k = 0; k < 12; ++k) Step(0);
+  Finish(0);
+  map_builder_->pose_graph()->RunFinalOptimization();
+  const std::string map_path = directory.path() + "/map.pbstream";
+  ASSERT_TRUE(map_builder_->SerializeStateToFile(true, map_path));
+  map_builder_.reset();
+  finished_.clear();
+
+  int num_injected = 0, num_submaps = 0;
+  int num_runs = 0;
+  for (int num_nodes = 0; num_nodes < NumNodes(); ++num_runs) {
+    constexpr int kNodesOfARun = 150;
+    constexpr std::array<int, 3> kEveryNNodes = {1, 4, 10};
+    stock_ = MakeStockOptions(StressLua(
+        kEveryNNodes[static_cast<size_t>(num_runs) % kEveryNNodes.size()],
+        num_runs % 2 == 1));
+    std::atomic<int> num_located{0};
+    map_builder_ = CreateMapBuilder(
+        mapping::CreateMapBuilder(stock_.map_builder), EagerOptions(),
+        [&num_located](const LocalizationResult& result) {
+          num_located += result.located ? 1 : 0;
+        });
+    LiveMapBuilder* const live = AsLiveMapBuilder(map_builder_.get());
+    auto* const pose_graph =
+        dynamic_cast<mapping::PoseGraph*>(map_builder_->pose_graph());
+    ASSERT_NE(pose_graph, nullptr);
+    if (num_runs % 3 == 1) map_builder_->LoadStateFromFile(map_path, true);
+    // A user who looks on.
+    std::atomic<bool> is_over{false};
+    std::thread onlooker([&] {
+      while (!is_over) {
+        (void)live->GetSummary();
+        (void)live->GetClosures();
+        (void)live->GetLocalization(1);
+        (void)map_builder_->pose_graph()->GetAllSubmapPoses();
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      }
+    });
+    AddTrajectory(false);
+    AddTrajectory(true);
+    for (int k = 0; k < kNodesOfARun; ++k, ++num_nodes) {
+      Step(static_cast<size_t>(
+          UniformInt(static_cast<int>(robots_.size()), &engine_)));
+      const int action = UniformInt(200, &engine_);
+      if (action < 8 && robots_.size() > 1) {
+        Finish(static_cast<size_t>(
+            UniformInt(static_cast<int>(robots_.size()), &engine_)));
+      } else if (action < 16 && robots_.size() < 4) {
+        AddTrajectory(UniformInt(2, &engine_) == 0);
+      } else if (action < 24 && !finished_.empty()) {
+        Delete();
+      } else if (action < 27) {
+        pose_graph->AddTrimmer(std::make_unique<RandomTrimmer>(engine_()));
+      } else if (action < 30) {
+        live->Localize(robots_.front().trajectory_id);
+      } else if (action < 32) {
+        pose_graph->RunFinalOptimization();
+      } else if (action < 34) {
+        map_builder_->LoadStateFromFile(map_path, UniformInt(2, &engine_) == 0);
+      } else if (action < 80) {
+        // Sometimes the worker keeps up.
+        live->WaitUntilIdle();
+      }
+    }
+    // The host demands it.
+    while (!robots_.empty()) Finish(0);
+    if (UniformInt(2, &engine_) == 0) {
+      map_builder_->pose_graph()->RunFinalOptimization();
+    }
+    is_over = true;
+    onlooker.join();
+    num_injected += live->GetSummary().num_injected;
+    num_submaps += live->GetSummary().num_submaps;
+    robots_.clear();
+    finished_.clear();
+    // In the middle of it all.
+    map_builder_.reset();
+  }
+  LOG(INFO) << num_runs << " runs, " << num_submaps << " submaps, "
+            << num_injected << " closures injected";
+  EXPECT_GT(num_injected, NumNodes() / 50);
+}
+
+}  // namespace
+}  // namespace cartographer_sdf
