@@ -399,6 +399,36 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- other in the merged map. Larger: tolerates more change between the maps.
     max_folded_fraction = 0.2,
   },
+  -- Which constraints of a map are doubtful (audit). What is not here is as in
+  -- loop_closing.
+  audit = {
+    -- [m], [rad] Constraints of a pair of submaps that put it no farther apart
+    -- are judged together.
+    grouping = {
+      max_distance_meters = 0.5,
+      max_rotation = 0.15,
+    },
+    -- Larger ratio of wall points in the other's free space: contradicted.
+    -- Smaller: finds more wrong constraints, drops more right ones.
+    max_contradiction_ratio = 0.1,
+    -- A pose that is better than any other of its pair by less is ambiguous
+    -- (log-odds; negative: another one is better).
+    min_margin = 0.,
+    -- Least score; log-odds. Larger: more constraints need support by others.
+    min_score = 0.,
+    -- [m], [rad] What is doubtful stays where the map that is made without it
+    -- agrees to this. Larger: fewer right constraints are dropped.
+    max_agreeing_translation_meters = 0.3,
+    max_agreeing_rotation = 0.1,
+    -- What that map contradicts by more is doubtful, too. Smaller: finds
+    -- smaller errors, drops more right ones.
+    withdrawal = {
+      -- [m], [rad]
+      max_translation_error_meters = 0.5,
+      max_rotation_error = 0.1,
+      max_num_rounds = 10,
+    },
+  },
   -- The HTML page that shows what was done.
   report = {
     -- [pixels] Longer side of the pictures of the whole map.

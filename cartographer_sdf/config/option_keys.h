@@ -262,6 +262,24 @@ void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
 }
 
 template <typename Visitor>
+void VisitOptions(Visitor& visit, GroupingOptions& options) {
+  visit("max_distance_meters", options.max_distance_meters);
+  visit("max_rotation", options.max_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, AuditOptions& options) {
+  visit("grouping", options.grouping);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
+  visit("min_margin", options.min_margin);
+  visit("min_score", options.min_score);
+  visit("max_agreeing_translation_meters",
+        options.max_agreeing_translation_meters);
+  visit("max_agreeing_rotation", options.max_agreeing_rotation);
+  visit("withdrawal", options.withdrawal);
+}
+
+template <typename Visitor>
 void VisitOptions(Visitor& visit, SubmapCloudOptions& options) {
   visit("max_num_scans", options.max_num_scans);
   visit("voxel_size_meters", options.voxel_size_meters);
@@ -337,6 +355,7 @@ void VisitOptions(Visitor& visit, Options& options) {
   visit("shape_context", options.shape_context);
   visit("relocalization", options.relocalization);
   visit("merging", options.merging);
+  visit("audit", options.audit);
   visit("report", options.report);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/audit/audit.h"
 #include "cartographer_sdf/evaluation/shape_context.h"
 #include "cartographer_sdf/loop_closing/loop_closing.h"
 #include "cartographer_sdf/report/report_options.h"
@@ -26,6 +27,7 @@ struct Options {
   CloudPlaceOptions shape_context;
   RelocalizationOptions relocalization;
   MergingOptions merging;
+  AuditOptions audit;
   ReportOptions report;
 };
 

@@ -12,23 +12,6 @@
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
-namespace {
-
-OptimizationOptions OptionsInForce(const LoopClosingOptions& options,
-                                   const PoseGraph& pose_graph) {
-  OptimizationOptions in_force = options.optimization;
-  if (!options.infer_odometry_weights) return in_force;
-  const std::optional<OdometryWeights> inferred =
-      InferOdometryWeights(options.optimization, pose_graph);
-  if (inferred) {
-    in_force.odometry_translation_weight = inferred->translation;
-    in_force.odometry_rotation_weight = inferred->rotation;
-  }
-  return in_force;
-}
-
-}  // namespace
-
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.place), Validate(options.match),
@@ -72,6 +55,19 @@ std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
         sum == sums.end() ? 0. : sum->second.first / sum->second.second};
   }
   return poses;
+}
+
+OptimizationOptions OptimizationInForce(const LoopClosingOptions& options,
+                                        const PoseGraph& pose_graph) {
+  OptimizationOptions in_force = options.optimization;
+  if (!options.infer_odometry_weights) return in_force;
+  const std::optional<OdometryWeights> inferred =
+      InferOdometryWeights(options.optimization, pose_graph);
+  if (inferred) {
+    in_force.odometry_translation_weight = inferred->translation;
+    in_force.odometry_rotation_weight = inferred->rotation;
+  }
+  return in_force;
 }
 
 absl::StatusOr<LoopClosingResult> CloseLoops(
@@ -133,7 +129,7 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   LiftClosures(options.lifting, result.state.pose_graph, map->places, *scans,
                executor, &result.closures);
 
-  result.optimization = OptionsInForce(options, result.state.pose_graph);
+  result.optimization = OptimizationInForce(options, result.state.pose_graph);
   OptimizedGraph optimized = OptimizeAndWithdraw(
       options.withdrawal, result.optimization, frozen_trajectories,
       result.state.pose_graph, &result.closures, clock.Begin("optimise"));

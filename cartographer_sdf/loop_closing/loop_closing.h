@@ -74,6 +74,11 @@ struct LoopClosingResult {
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage = {});
 
+// `options.optimization`, with the odometry weights that the map shows where
+// they are to be inferred and it shows any.
+[[nodiscard]] OptimizationOptions OptimizationInForce(
+    const LoopClosingOptions& options, const PoseGraph& pose_graph);
+
 // Where local SLAM says that the submaps are, and how far the robot had driven.
 [[nodiscard]] std::map<SubmapId, OdometryPose> OdometryPoses(
     const MapState& state);

@@ -132,7 +132,9 @@ std::string RenderClosure(const ReportedClosure& reported,
       "</span>",
       IdText(closure.reference), IdText(closure.query),
       reported.accepted ? "accepted" : "withdrawn",
-      reported.accepted ? "accepted" : "withdrawn");
+      !reported.status.empty() ? EscapeMarkup(reported.status)
+      : reported.accepted      ? "accepted"
+                               : "withdrawn");
   if (!reported.reason.empty()) {
     absl::StrAppend(&html, "<br/>", EscapeMarkup(reported.reason));
   }
@@ -153,7 +155,8 @@ std::string RenderClosure(const ReportedClosure& reported,
   return html + "</td></tr>\n";
 }
 
-std::string RenderClosures(const std::vector<ReportedClosure>& closures,
+std::string RenderClosures(const std::string& heading,
+                           const std::vector<ReportedClosure>& closures,
                            const ReportOptions& options) {
   if (closures.empty()) return "";
   std::string rows;
@@ -195,7 +198,7 @@ std::string RenderClosures(const std::vector<ReportedClosure>& closures,
       "<th>y [m]</th><th>yaw [&#176;]</th><th>matched pair</th></tr></thead>\n"
       "<tbody>\n",
       rows, "</tbody></table></div>\n");
-  return Section("Closures", html);
+  return Section(heading, html);
 }
 
 std::string RenderHistograms(const std::vector<HistogramPlot>& histograms) {
@@ -257,7 +260,7 @@ std::string RenderReport(const ReportContent& content,
       title, "</title>\n<style>", kStyle, "</style>\n</head>\n<body>\n<header>",
       "<h1>", title, "</h1>\n", subtitle, "</header>\n<main>\n",
       RenderSummary(content), RenderMaps(content.maps),
-      RenderClosures(content.closures, options),
+      RenderClosures(content.closures_heading, content.closures, options),
       RenderHistograms(content.histograms), RenderStages(content.stages),
       RenderOptions(content.options), "</main>\n</body>\n</html>\n");
 }

@@ -28,6 +28,8 @@ struct ReportedClosure {
   LoopClosure closure;
   // Went into the pose graph. Else it was withdrawn, by `reason`.
   bool accepted = false;
+  // In place of "accepted" or "withdrawn", where that is not the word.
+  std::string status;
   std::string reason;
   // Of the matched pair (DrawMatchedPair); empty where it was not drawn.
   std::string png;
@@ -47,6 +49,7 @@ struct ReportContent {
   std::vector<std::string> warnings;
   // Of the whole map, shown side by side: before and after.
   std::vector<ReportedPicture> maps;
+  std::string closures_heading = "Closures";
   std::vector<ReportedClosure> closures;
   std::vector<HistogramPlot> histograms;
   std::vector<StageTime> stages;

@@ -12,8 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/report/html_report.h"
-#include "cartographer_sdf/report/map_painter.h"
 #include "cartographer_sdf/report/submap_pictures.h"
+#include "cartographer_sdf/tools/map_picture.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -37,90 +37,18 @@ std::vector<const ClosureOutcome*> InOrderOfInterest(
   return order;
 }
 
-// One map as a picture, with the paths that were driven and the closures.
-class MapPicture {
- public:
-  MapPicture(const MapState& state, const PoseGraph& pose_graph,
-             const int max_pixels)
-      : pose_graph_(pose_graph),
-        painter_(Grids(state, pose_graph), max_pixels) {}
-
-  void AddSubmap(const SubmapId& id, const OccupancyGrid& grid) {
-    const auto pose = pose_graph_.submap_poses.find(id);
-    if (pose != pose_graph_.submap_poses.end()) {
-      painter_.AddSubmap(grid, pose->second);
+// Those that are not in the graph lie over those that are.
+std::vector<SubmapLink> LinksOf(const std::vector<ClosureOutcome>& closures) {
+  std::vector<SubmapLink> links;
+  for (const bool in_graph : {true, false}) {
+    for (const ClosureOutcome& outcome : closures) {
+      if ((outcome.fate == Fate::kInGraph) != in_graph) continue;
+      links.push_back({outcome.match.closure.reference,
+                       outcome.match.closure.query,
+                       in_graph ? kClosureColor : kRefusedColor});
     }
   }
-
-  [[nodiscard]] ReportedPicture Finish(
-      const std::string& caption, const std::vector<ClosureOutcome>& closures,
-      const std::map<SubmapId, Eigen::Vector2d>& centres) const {
-    Picture picture = painter_.Paint();
-    const PixelFrame& frame = painter_.frame();
-    DrawMetricGrid(frame, &picture);
-    DrawPaths(frame, &picture);
-    for (const bool in_graph : {true, false}) {
-      for (const ClosureOutcome& outcome : closures) {
-        if ((outcome.fate == Fate::kInGraph) != in_graph) continue;
-        const LoopClosure& closure = outcome.match.closure;
-        DrawLink(Place(closure.reference, centres),
-                 Place(closure.query, centres), frame,
-                 in_graph ? kClosureColor : kRefusedColor, &picture);
-      }
-    }
-    DrawScaleBar(frame, &picture);
-    return {caption, picture.EncodePng()};
-  }
-
- private:
-  static std::vector<PlacedGrid> Grids(const MapState& state,
-                                       const PoseGraph& pose_graph) {
-    std::vector<PlacedGrid> grids;
-    for (const auto& [id, submap] : state.submaps) {
-      const auto pose = pose_graph.submap_poses.find(id);
-      if (pose != pose_graph.submap_poses.end()) {
-        grids.push_back({submap.geometry, pose->second});
-      }
-    }
-    return grids;
-  }
-  [[nodiscard]] Eigen::Vector2d Place(
-      const SubmapId& id,
-      const std::map<SubmapId, Eigen::Vector2d>& centres) const {
-    return pose_graph_.submap_poses.at(id) * centres.at(id);
-  }
-  void DrawPaths(const PixelFrame& frame, Picture* const picture) const {
-    std::map<int, std::vector<Eigen::Vector2d>> paths;
-    for (const auto& [id, node] : pose_graph_.nodes) {
-      paths[id.trajectory].push_back(node.T_map_node.translation());
-    }
-    for (const auto& [trajectory, path] : paths) {
-      DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
-    }
-  }
-
-  const PoseGraph& pose_graph_;
-  MapPainter painter_;
-};
-
-// The middle of a submap's nodes, in its frame: where the robot was.
-std::map<SubmapId, Eigen::Vector2d> Centres(const PoseGraph& pose_graph) {
-  std::map<SubmapId, std::pair<Eigen::Vector2d, int>> sums;
-  for (const auto& [id, pose] : pose_graph.submap_poses) {
-    sums[id] = {Eigen::Vector2d::Zero(), 0};
-  }
-  for (const Constraint& constraint : pose_graph.constraints) {
-    if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;
-    auto& [sum, count] = sums[constraint.submap];
-    sum += constraint.T_submap_node.translation();
-    ++count;
-  }
-  std::map<SubmapId, Eigen::Vector2d> centres;
-  for (const auto& [id, sum] : sums) {
-    centres[id] = sum.second > 0 ? Eigen::Vector2d(sum.first / sum.second)
-                                 : Eigen::Vector2d::Zero();
-  }
-  return centres;
+  return links;
 }
 
 struct ReadPictures {
@@ -146,12 +74,10 @@ absl::StatusOr<ReadPictures> PaintMaps(const std::string& input,
       },
       on_progress);
   if (!read.ok()) return read.status();
-  const std::map<SubmapId, Eigen::Vector2d> centres =
-      Centres(result.state.pose_graph);
-  pictures.maps.push_back(before.Finish("Before", {}, centres));
+  pictures.maps.push_back(before.Finish("Before", {}));
   pictures.maps.push_back(
       after.Finish("After, with the closures: red in the graph, purple not",
-                   result.closures, centres));
+                   LinksOf(result.closures)));
   return pictures;
 }
 

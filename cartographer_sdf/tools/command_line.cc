@@ -207,9 +207,11 @@ std::string HelpText(const std::vector<Subcommand>& subcommands) {
       kProgram, " --version\n\nSubcommands:\n");
   size_t width = 0;
   for (const Subcommand& subcommand : subcommands) {
+    if (subcommand.is_for_developers) continue;
     width = std::max(width, subcommand.name.size());
   }
   for (const Subcommand& subcommand : subcommands) {
+    if (subcommand.is_for_developers) continue;
     absl::StrAppend(&text, "  ", subcommand.name,
                     std::string(width + 2 - subcommand.name.size(), ' '),
                     subcommand.summary, "\n");

@@ -127,8 +127,11 @@ class OverlayReport {
     DrawScaleBar(frame, &picture);
     content->maps.push_back({caption, picture.EncodePng()});
     for (const ShownMatch& match : matches_) {
-      content->closures.push_back({match.match.closure, match.is_accepted,
-                                   match.reason, DrawPair(match)});
+      content->closures.push_back({match.match.closure,
+                                   match.is_accepted,
+                                   {},
+                                   match.reason,
+                                   DrawPair(match)});
     }
     return absl::OkStatus();
   }

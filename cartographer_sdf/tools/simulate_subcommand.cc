@@ -32,8 +32,9 @@ DEFINE_double(lidar_range, 20., "Echoes from farther away are lost [m].");
 DEFINE_double(lidar_field_of_view, 270., "About the way ahead [deg].");
 DEFINE_double(length, 360., "How far the robot drives [m].");
 DEFINE_uint32(seed, 1,
-              "Of the drive, its drift and the noise. Two sessions in one "
-              "building differ in it alone.");
+              "Of what is random: in simulate the drive, its drift and the "
+              "noise, so that two sessions in one building differ in it "
+              "alone.");
 
 namespace cartographer_sdf {
 namespace {

@@ -5,8 +5,10 @@
 
 namespace cartographer_sdf {
 
+Subcommand AuditSubcommand();
 Subcommand CloseLoopsSubcommand();
 Subcommand Evaluate();
+Subcommand FalsifySubcommand();
 Subcommand Figures();
 Subcommand Info();
 Subcommand MatchSubcommand();
@@ -19,9 +21,11 @@ std::vector<Subcommand> AllSubcommands() {
           MatchSubcommand(),
           RelocalizeSubcommand(),
           MergeSubcommand(),
+          AuditSubcommand(),
           Evaluate(),
           Figures(),
           SimulateSubcommand(),
+          FalsifySubcommand(),
           Info()};
 }
 

@@ -34,6 +34,8 @@ struct Subcommand {
   // stderr and the exit code 1, or 2 for a UsageError.
   absl::Status (*run)() = nullptr;
   std::string program = "cartographer_sdf";
+  // For those who work on the project: the general help does not list it.
+  bool is_for_developers = false;
 
   // What the user types before the flags.
   [[nodiscard]] std::string Invocation() const {

@@ -45,6 +45,14 @@ TEST(ProgramTest, Helps) {
               AllOf(HasSubstr("Usage:"), HasSubstr("what is in a map")));
   // Flags of libraries are nobody's business.
   EXPECT_THAT(help.output, Not(HasSubstr("minloglevel")));
+  for (const Subcommand& subcommand : AllSubcommands()) {
+    const auto line = HasSubstr("\n  " + subcommand.name + " ");
+    if (subcommand.is_for_developers) {
+      EXPECT_THAT(help.output, Not(line));
+    } else {
+      EXPECT_THAT(help.output, line);
+    }
+  }
 }
 
 TEST(ProgramTest, HelpsWithEachSubcommand) {
