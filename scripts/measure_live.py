@@ -45,8 +45,14 @@ MAPPING = {
     "searcher": ("cartographer_mapping_searcher_only.lua", "sdf_live.lua"),
     "both": ("cartographer_mapping.lua", "sdf_live.lua"),
 }
-# Cartographer's own global search; with the searcher it is off.
+# Cartographer's own global search, and its own defaults around it; with the searcher it is off.
 STOCK_LOCALIZATION = """include "cartographer_localization.lua"
+local builder = POSE_GRAPH.constraint_builder
+builder.max_constraint_distance = 15.
+builder.sampling_ratio = 0.3
+builder.fast_correlative_scan_matcher.linear_search_window = 7.
+builder.fast_correlative_scan_matcher.angular_search_window = math.rad(30.)
+builder.fast_correlative_scan_matcher.branch_and_bound_depth = 7
 POSE_GRAPH.global_sampling_ratio = {ratio}
 POSE_GRAPH.global_constraint_search_after_n_seconds = 10.
 return options
