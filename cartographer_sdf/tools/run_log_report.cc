@@ -328,9 +328,11 @@ absl::Status WriteRunReport(const std::string& directory,
   content.summary = SummaryRows(result);
   content.maps.push_back(*std::move(picture));
   for (const ClosureRecord& record : result.closures) {
-    content.closures.push_back(
-        ReportedClosure{record.closure, record.fate == ClosureFate::kInjected,
-                        ClosureFateName(record.fate), ""});
+    ReportedClosure reported;
+    reported.closure = record.closure;
+    reported.accepted = record.fate == ClosureFate::kInjected;
+    reported.reason = ClosureFateName(record.fate);
+    content.closures.push_back(std::move(reported));
   }
   HistogramPlot latency;
   latency.title = "Time of AddSensorData";
