@@ -94,11 +94,11 @@ TEST(JudgeByNeighboursTest, RefusesAMatchThatNeighboursContradict) {
   // The rooms agree just as well, but local SLAM says that the east room was
   // seen elsewhere: as between twins.
   const TwoVisits elsewhere(Rigid2(-2.5, 1., 0.4));
-  std::vector<Match> judged = Judged(elsewhere, wrong);
+  const std::vector<Match> judged_elsewhere = Judged(elsewhere, wrong);
   const Match* const twin =
-      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+      Find(judged_elsewhere, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
   ASSERT_NE(twin, nullptr);
-  judged = Judged(visits, right);
+  const std::vector<Match> judged = Judged(visits, right);
   const Match* const west =
       Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
   ASSERT_NE(west, nullptr);
