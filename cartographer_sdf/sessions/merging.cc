@@ -271,8 +271,7 @@ class Merger {
     const Rigid2 after = Between(result_.pose_graph, *pair);
     if (!Overlap(*pair->reference, *pair->query, after)) return;
     pair->overlaps = true;
-    std::optional<Match> contradiction =
-        Contradiction(*pair, after);
+    std::optional<Match> contradiction = Contradiction(*pair, after);
     if (!contradiction) return;
     if (SessionOf(pair->reference->id) == SessionOf(pair->query->id)) {
       const Rigid2 before = Between(result_.state.pose_graph, *pair);
@@ -459,11 +458,12 @@ absl::StatusOr<MergingResult> MergeSessions(
     if (!session.ok()) return session.status();
     sessions.push_back(*std::move(session));
     result.sessions.push_back({path, result.sessions.size(), {}});
-  }
-  const int num_freezable =
-      static_cast<int>(sessions.front().map.state.trajectories.size());
-  for (const int trajectory : frozen_trajectories) {
-    if (trajectory >= num_freezable) {
+    // As soon as it is known.
+    if (sessions.size() > 1) continue;
+    const int num_freezable =
+        static_cast<int>(sessions.front().map.state.trajectories.size());
+    for (const int trajectory : frozen_trajectories) {
+      if (trajectory < num_freezable) continue;
       return absl::InvalidArgumentError(absl::StrCat(
           "trajectory ", trajectory, " is not of the first map, ",
           paths.front(), ", and cannot be frozen: only one map can stay"));
