@@ -3,7 +3,9 @@
 
 #include "cartographer_sdf/field/distance_field.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cartographer_sdf/field/distance_transform.h"
 #include "glog/logging.h"
@@ -26,6 +28,51 @@ BoolArray PadWithFalse(const BoolArray& cells, const int margin) {
   padded.block(margin, margin, cells.rows(), cells.cols()) = cells;
   return padded;
 }
+
+// Squared distances [cells] from occupied cells to the nearest cell that is
+// not. Walls are thin: most are found close by, at a fraction of what the
+// transform of the whole grid takes. There must be a cell that is not occupied.
+class SquaredDepths {
+ public:
+  explicit SquaredDepths(const BoolArray& occupied) : occupied_(occupied) {}
+
+  int At(const Eigen::Index i, const Eigen::Index j) {
+    for (int reach = 1; reach <= kMaxReach; ++reach) {
+      const int nearest = NearestWithin(i, j, reach);
+      // No cell farther out is nearer.
+      if (nearest <= (reach + 1) * (reach + 1)) return nearest;
+    }
+    if (transform_.size() == 0) {
+      transform_ = SquaredDistanceTransform(!occupied_);
+    }
+    return transform_(i, j);
+  }
+
+ private:
+  // Walls of up to twice as many cells.
+  static constexpr int kMaxReach = 4;
+
+  // Of the cells up to `reach` away along each axis.
+  int NearestWithin(const Eigen::Index i, const Eigen::Index j,
+                    const int reach) const {
+    int nearest = std::numeric_limits<int>::max();
+    for (int b = -reach; b <= reach; ++b) {
+      const Eigen::Index column = j + b;
+      if (column < 0 || column >= occupied_.cols()) continue;
+      for (int a = -reach; a <= reach; ++a) {
+        const Eigen::Index row = i + a;
+        if (row < 0 || row >= occupied_.rows() || occupied_(row, column)) {
+          continue;
+        }
+        nearest = std::min(nearest, a * a + b * b);
+      }
+    }
+    return nearest;
+  }
+
+  const BoolArray& occupied_;
+  Eigen::ArrayXXi transform_;
+};
 
 }  // namespace
 
@@ -60,11 +107,13 @@ std::optional<DistanceField> MakeDistanceField(const FieldOptions& options,
       resolution *
       (SquaredDistanceTransform(occupied).cast<float>().sqrt() - 0.5f);
   if (occupied.all()) return field;
-  const Eigen::ArrayXXi squared_depth = SquaredDistanceTransform(!occupied);
-  for (Eigen::Index k = 0; k < occupied.size(); ++k) {
-    if (!occupied(k)) continue;
-    field.distance(k) =
-        resolution * (0.5f - std::sqrt(static_cast<float>(squared_depth(k))));
+  SquaredDepths squared_depths(occupied);
+  for (Eigen::Index j = 0; j < occupied.cols(); ++j) {
+    for (Eigen::Index i = 0; i < occupied.rows(); ++i) {
+      if (!occupied(i, j)) continue;
+      const float squared_depth = static_cast<float>(squared_depths.At(i, j));
+      field.distance(i, j) = resolution * (0.5f - std::sqrt(squared_depth));
+    }
   }
   return field;
 }

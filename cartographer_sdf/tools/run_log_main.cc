@@ -20,6 +20,7 @@
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/log_run.h"
 #include "cartographer_sdf/recording/carmen_log.h"
+#include "cartographer_sdf/tools/allocator.h"
 #include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/progress.h"
@@ -229,6 +230,7 @@ Subcommand RunLogCommand() {
 }  // namespace cartographer_sdf
 
 int main(int argc, char** argv) {
+  cartographer_sdf::KeepFreedMemory();
   google::InitGoogleLogging(argc > 0 ? argv[0] : cartographer_sdf::kProgram);
   // All messages go to the sink alone, none to files.
   FLAGS_stderrthreshold = google::NUM_SEVERITIES;

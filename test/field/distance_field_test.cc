@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/field/distance_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -82,6 +83,46 @@ TEST(DistanceFieldTest, IsExactForWallsAlongTheCells) {
     for (int i = 0; i < 80; ++i) {
       EXPECT_NEAR(field.distance(i, j),
                   corridor(field.geometry.CellCentre({i, j})), kRounding);
+    }
+  }
+}
+
+// From walls of one cell to blocks that are farther across than is looked for
+// nearby, some of them cut by the rim of the grid.
+TEST(DistanceFieldTest, IsExactInsideWallsOfAnyThickness) {
+  std::mt19937 engine(1);
+  for (const int largest : {1, 3, 8, 20}) {
+    constexpr int kSize = 40;
+    OccupancyGrid grid = Rasterise(testing::SolidDisc({0., 0.}, 0.),
+                                   CentredGeometry(kSize), {}, {10., 10.});
+    BoolArray wall = BoolArray::Constant(kSize, kSize, false);
+    for (int k = 0; k < 12; ++k) {
+      const int side = 1 + static_cast<int>(engine() % largest);
+      const int i = static_cast<int>(engine() % kSize);
+      const int j = static_cast<int>(engine() % kSize);
+      wall.block(i, j, std::min(side, kSize - i), std::min(side, kSize - j))
+          .setConstant(true);
+    }
+    grid.known.setConstant(true);
+    grid.probability =
+        wall.select(Eigen::ArrayXXf::Constant(kSize, kSize, 0.9f),
+                    Eigen::ArrayXXf::Constant(kSize, kSize, 0.1f));
+    const DistanceField field = FieldOf(grid);
+    for (int j = 0; j < kSize; ++j) {
+      for (int i = 0; i < kSize; ++i) {
+        double nearest = 2. * kSize;  // [cells]
+        for (int b = 0; b < kSize; ++b) {
+          for (int a = 0; a < kSize; ++a) {
+            if (wall(a, b) != wall(i, j)) {
+              nearest = std::min(nearest, std::hypot(a - i, b - j));
+            }
+          }
+        }
+        EXPECT_NEAR(field.distance(i, j),
+                    kResolution * (wall(i, j) ? 0.5 - nearest : nearest - 0.5),
+                    kRounding)
+            << i << " " << j;
+      }
     }
   }
 }
