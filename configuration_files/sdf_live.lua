@@ -42,7 +42,8 @@ SDF_LIVE = {
     -- The best so many submaps of the map are matched with the query. Larger:
     -- found sooner, more CPU time.
     max_num_candidates = 50,
-    -- Sum of the scores of all matches that agree on the pose; log-odds. Larger:
+    -- Sum of the scores of all matches that agree on the pose; log-odds. One of
+    -- them must be accepted, the others more likely right than wrong. Larger:
     -- later and more certain.
     min_score = 7.,
     -- By how much more than for any other pose. Larger: look-alikes are told

@@ -146,7 +146,8 @@ BackgroundSearch::Localization BackgroundSearch::Localize(
     if (!match) continue;
     votes.push_back(
         {T_map_submap.at(candidate.id) * match->closure.T_reference_query,
-         match->closure.score, match->verdict == Verdict::kAccepted});
+         match->closure.score, match->verdict == Verdict::kAccepted,
+         match->verdict == Verdict::kUnlikely && match->closure.score > 0.});
     matches.push_back(*std::move(match));
   }
   const LocalizationOptions& options = options_.localization;

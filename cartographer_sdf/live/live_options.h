@@ -36,8 +36,9 @@ struct LocalizationOptions {
   // less than a submap does. Larger: found sooner, more CPU time.
   int max_num_candidates = 50;
   // Summed scores of the matches that agree on one pose, beyond which the
-  // trajectory counts as located; log-odds. Matches of overlapping submaps tell
-  // much the same, hence the high threshold.
+  // trajectory counts as located; log-odds. One of them must be accepted; the
+  // others count where they are more likely right than wrong. Matches of
+  // overlapping submaps tell much the same, hence the high threshold.
   double min_score = 7.;
   // By how much they must exceed those of the best distinct pose.
   double min_lead = 4.;

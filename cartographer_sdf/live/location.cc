@@ -36,7 +36,7 @@ std::optional<Location> FindLocation(const LocalizationOptions& options,
     Location location;
     location.T_map_query = leader.T_map_query;
     for (size_t k = 0; k < votes.size(); ++k) {
-      if (!votes[k].is_accepted ||
+      if (!(votes[k].is_accepted || votes[k].is_likely) ||
           !IsSamePose(options, leader.T_map_query, votes[k].T_map_query)) {
         continue;
       }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Where in the map do several matches put one query? Matches that agree on a
-// pose are added up, and held against those that agree on another one.
+// pose are added up, and held against those that agree on another one. A young
+// query sees too little for most of them to be certain by themselves; what is
+// likely counts, too, where it agrees with one that is certain.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_LOCATION_H_
 #define CARTOGRAPHER_SDF_LIVE_LOCATION_H_
@@ -21,16 +23,18 @@ struct PoseVote {
   Rigid2 T_map_query;
   double score = 0.;         // log-odds
   bool is_accepted = false;  // by verification
+  // Not refused for what it shows; that it shows too little is no reason.
+  bool is_likely = false;
 };
 
 struct Location {
   Rigid2 T_map_query;  // of the best of the supporters
-  // Of the accepted votes for the pose.
+  // Of the accepted and the likely votes for the pose.
   double score = 0.;
   // Of all votes for the best pose that is clearly another one; 0 where there
   // is none.
   double runner_up_score = 0.;
-  // Indices of the accepted votes for the pose, best first.
+  // Indices of these votes, best first.
   std::vector<size_t> supporters;
 };
 

@@ -13,8 +13,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// The host's own background threads have 10.
-constexpr int kNiceness = 15;
+// As the host's own background threads.
+constexpr int kNiceness = 10;
 
 }  // namespace
 

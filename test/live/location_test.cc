@@ -36,6 +36,18 @@ TEST(LocationTest, RefusedMatchesRivalButDoNotSupport) {
   EXPECT_EQ(location->runner_up_score, 5.);
 }
 
+TEST(LocationTest, LikelyMatchesSupportAnAcceptedOne) {
+  const LocalizationOptions options;
+  const PoseVote likely{{1., 2., 0.}, 2., false, true};
+  EXPECT_FALSE(FindLocation(options, {likely, likely}));
+  const std::optional<Location> location =
+      FindLocation(options, {likely, {{1., 2.1, 0.}, 4., true}, likely});
+  ASSERT_TRUE(location);
+  EXPECT_EQ(location->score, 8.);
+  EXPECT_THAT(location->supporters, ElementsAre(1u, 0u, 2u));
+  EXPECT_EQ(location->T_map_query.translation().y(), 2.1);
+}
+
 TEST(LocationTest, TurnedPosesAreDistinct) {
   const std::optional<Location> location =
       FindLocation(LocalizationOptions(),
