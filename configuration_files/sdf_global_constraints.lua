@@ -395,8 +395,13 @@ SDF_GLOBAL_CONSTRAINTS = {
   },
   -- Several maps as one (merge). What is not here is as above.
   merging = {
-    -- Largest fraction of overlapping pairs of submaps that may contradict each
-    -- other in the merged map. Larger: tolerates more change between the maps.
+    -- Submaps whose walls stand in each other's free space by more than this
+    -- fraction contradict each other. Larger: tolerates more change between the
+    -- maps.
+    max_contradiction_ratio = 0.05,
+    -- Largest fraction of the overlapping pairs of submaps of two maps that may
+    -- contradict each other in the merged map; more is a fold, and refused.
+    -- Larger: tolerates more change between the maps.
     max_folded_fraction = 0.2,
   },
   -- Which constraints of a map are doubtful (audit). What is not here is as in

@@ -339,6 +339,7 @@ void VisitOptions(Visitor& visit, RelocalizationOptions& options) {
 
 template <typename Visitor>
 void VisitOptions(Visitor& visit, MergingOptions& options) {
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
 }
 

@@ -243,19 +243,17 @@ absl::Status WriteMessage(const google::protobuf::MessageLite& message,
   return writer->Write(record);
 }
 
-absl::Status CheckOutput(const std::vector<MapPart>& parts,
-                         const std::string& output) {
-  for (const MapPart& part : parts) {
-    std::error_code error;
-    if (std::filesystem::equivalent(part.path, output, error)) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "cannot write ", output, ": it is one of the maps that are read"));
-    }
+}  // namespace
+
+absl::Status CheckIsNoInput(const std::string& input,
+                            const std::string& output) {
+  std::error_code error;
+  if (std::filesystem::equivalent(input, output, error)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "cannot write ", output, ": it is one of the maps that are read"));
   }
   return absl::OkStatus();
 }
-
-}  // namespace
 
 std::vector<MapPart> NumberTrajectories(
     const std::vector<std::string>& paths,
@@ -294,8 +292,9 @@ absl::Status WriteJoinedMap(const std::vector<MapPart>& parts,
                             const std::string& output,
                             const ProgressCallback& on_progress) {
   CHECK(!parts.empty());
-  if (absl::Status status = CheckOutput(parts, output); !status.ok()) {
-    return status;
+  for (const MapPart& part : parts) {
+    absl::Status status = CheckIsNoInput(part.path, output);
+    if (!status.ok()) return status;
   }
   absl::StatusOr<JoinedGraph> joined = ReadJoinedGraph(parts, on_progress);
   if (!joined.ok()) return joined.status();

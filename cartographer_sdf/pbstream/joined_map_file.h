@@ -36,6 +36,11 @@ struct MapPart {
 // pose stays: to the host, equal names are one landmark.
 void AppendMap(const MapPart& part, const MapState& map, MapState* joined);
 
+// An error where the output is the input, which would be lost. WriteJoinedMap
+// checks it, too; this is for whoever wants to know before the work is done.
+[[nodiscard]] absl::Status CheckIsNoInput(const std::string& input,
+                                          const std::string& output);
+
 // Writes one map of all records of all parts, in the host's order of kinds and
 // otherwise that of the parts, with the poses and constraints of `pose_graph`,
 // which is what AppendMap makes of the parts and the caller has changed, as

@@ -260,19 +260,23 @@ class Merger {
            graph.submap_poses.at(pair.query->id);
   }
 
+  [[nodiscard]] std::optional<Match> Contradiction(
+      const Pair& pair, const Rigid2& T_reference_query) const {
+    return FindContradiction(stages_.match, options_.max_contradiction_ratio,
+                             *pair.reference, *pair.query, T_reference_query);
+  }
+
   // What contradicted itself before is not the merge's fault.
   void CheckPair(Pair* const pair) const {
     const Rigid2 after = Between(result_.pose_graph, *pair);
     if (!Overlap(*pair->reference, *pair->query, after)) return;
     pair->overlaps = true;
-    std::optional<Match> contradiction =
-        FindContradiction(stages_.match, *pair->reference, *pair->query, after);
+    std::optional<Match> contradiction = Contradiction(*pair, after);
     if (!contradiction) return;
     if (SessionOf(pair->reference->id) == SessionOf(pair->query->id)) {
       const Rigid2 before = Between(result_.state.pose_graph, *pair);
       if (Overlap(*pair->reference, *pair->query, before) &&
-          FindContradiction(stages_.match, *pair->reference, *pair->query,
-                            before)) {
+          Contradiction(*pair, before)) {
         return;
       }
     }
@@ -295,11 +299,38 @@ class Merger {
     }
     executor_(pairs.size(), [&](const size_t k) { CheckPair(&pairs[k]); });
     for (Pair& pair : pairs) {
-      result_.num_overlapping += pair.overlaps;
+      if (!pair.overlaps) continue;
+      ++result_.num_overlapping;
+      Overlaps& overlaps = overlaps_[std::minmax(
+          {SessionOf(pair.reference->id), SessionOf(pair.query->id)})];
+      ++overlaps.num_pairs;
       if (pair.contradiction) {
+        overlaps.contradictions.push_back(pair.contradiction->closure);
         result_.contradictions.push_back(*std::move(pair.contradiction));
       }
     }
+  }
+
+  // Of two sessions, or within one, apart from all others: a long map that
+  // agrees with itself must not outweigh what a short one contradicts.
+  [[nodiscard]] std::string DescribeFold() const {
+    for (const auto& [sessions, overlaps] : overlaps_) {
+      const size_t num_folded = overlaps.contradictions.size();
+      if (static_cast<double>(num_folded) <=
+          options_.max_folded_fraction * overlaps.num_pairs) {
+        continue;
+      }
+      const LoopClosure& example = overlaps.contradictions.front();
+      return absl::StrFormat(
+          "the merged map would be folded: of %d pairs of submaps of %s and %s "
+          "that it lays over each other %d have walls in each other's free "
+          "space, such as %d,%d and %d,%d",
+          overlaps.num_pairs, sessions_[sessions.first]->path,
+          sessions_[sessions.second]->path, num_folded,
+          example.reference.trajectory, example.reference.index,
+          example.query.trajectory, example.query.index);
+    }
+    return "";
   }
 
   // Submaps that are in no file can't be written.
@@ -337,18 +368,7 @@ class Merger {
         return;
       }
     }
-    const size_t num_folded = result_.contradictions.size();
-    if (static_cast<double>(num_folded) >
-        options_.max_folded_fraction * result_.num_overlapping) {
-      const LoopClosure& example = result_.contradictions.front().closure;
-      result_.refusal = absl::StrFormat(
-          "the merged map would be folded: of %d pairs of submaps that it lays "
-          "over each other %d have walls in each other's free space, such as "
-          "%d,%d and %d,%d",
-          result_.num_overlapping, num_folded, example.reference.trajectory,
-          example.reference.index, example.query.trajectory,
-          example.query.index);
-    }
+    result_.refusal = DescribeFold();
   }
 
   const MergingOptions& options_;
@@ -359,6 +379,12 @@ class Merger {
   MergingResult& result_;
   std::vector<size_t> part_sessions_;  // of the parts, in order
   JoinedSessions joined_;
+  // What the merged map lays over each other, by the sessions that it is of.
+  struct Overlaps {
+    int num_pairs = 0;
+    std::vector<LoopClosure> contradictions;
+  };
+  std::map<std::pair<size_t, size_t>, Overlaps> overlaps_;
 };
 
 absl::Status CheckPaths(const std::vector<std::string>& paths) {
@@ -385,9 +411,28 @@ size_t LargestGroup(const Groups& groups, const size_t num_sessions) {
   return largest;
 }
 
+// Of the pair that is most alike.
+std::string DescribeStrangers(const MergingResult& result) {
+  const SessionLink* most_alike = &result.links.front();
+  for (const SessionLink& link : result.links) {
+    if (link.relocalization.score.value_or(0.) >
+        most_alike->relocalization.score.value_or(0.)) {
+      most_alike = &link;
+    }
+  }
+  return absl::StrCat("no two of the maps are connected; ",
+                      result.sessions[most_alike->second].path, " in ",
+                      result.sessions[most_alike->first].path, ": ",
+                      most_alike->relocalization.reason);
+}
+
 }  // namespace
 
 std::string Validate(const MergingOptions& options) {
+  if (!(options.max_contradiction_ratio > 0. &&
+        options.max_contradiction_ratio <= 1.)) {
+    return "max_contradiction_ratio must be above 0 and not above 1";
+  }
   if (!(options.max_folded_fraction >= 0. &&
         options.max_folded_fraction <= 1.)) {
     return "max_folded_fraction must lie between 0 and 1";
@@ -413,11 +458,12 @@ absl::StatusOr<MergingResult> MergeSessions(
     if (!session.ok()) return session.status();
     sessions.push_back(*std::move(session));
     result.sessions.push_back({path, result.sessions.size(), {}});
-  }
-  const int num_freezable =
-      static_cast<int>(sessions.front().map.state.trajectories.size());
-  for (const int trajectory : frozen_trajectories) {
-    if (trajectory >= num_freezable) {
+    // As soon as it is known.
+    if (sessions.size() > 1) continue;
+    const int num_freezable =
+        static_cast<int>(sessions.front().map.state.trajectories.size());
+    for (const int trajectory : frozen_trajectories) {
+      if (trajectory < num_freezable) continue;
       return absl::InvalidArgumentError(absl::StrCat(
           "trajectory ", trajectory, " is not of the first map, ",
           paths.front(), ", and cannot be frozen: only one map can stay"));
@@ -449,7 +495,7 @@ absl::StatusOr<MergingResult> MergeSessions(
       PlaceSessions(LargestGroup(groups, sessions.size()), result.links);
   if (placed.size() == 1) {
     clock.End();
-    result.refusal = "no two of the maps are connected";
+    result.refusal = DescribeStrangers(result);
     return result;
   }
   if (!frozen_trajectories.empty() && placed.count(0) == 0) {

@@ -392,8 +392,11 @@ Confirmation ConfirmPlacement(
                    options.same_distance_meters, options.same_rotation);
     if (!pair->agreeing && DriftSigma(consistency, pair->prediction.way) <=
                                kMaxContradictionSigma) {
-      pair->contradicting = FindContradiction(match_options, *pair->reference,
-                                              *pair->query, predicted);
+      // Twice what a single match may have: furniture moves, people walk.
+      pair->contradicting = FindContradiction(
+          match_options,
+          2. * match_options.verification.max_contradiction_ratio,
+          *pair->reference, *pair->query, predicted);
     }
   };
   Confirmation confirmation;

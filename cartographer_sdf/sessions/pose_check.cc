@@ -75,6 +75,7 @@ std::optional<Match> VerifyPose(const MatchOptions& options,
 }
 
 std::optional<Match> FindContradiction(const MatchOptions& options,
+                                       const double max_contradiction_ratio,
                                        const Place& reference,
                                        const Place& query,
                                        const Rigid2& T_reference_query) {
@@ -94,10 +95,7 @@ std::optional<Match> FindContradiction(const MatchOptions& options,
                        pose.Inverse(), num_points);
   const double mean_ratio =
       0.5 * (forward.ContradictionRatio() + backward.ContradictionRatio());
-  // Twice what a single match may have: furniture moves, people walk.
-  if (mean_ratio <= 2. * verification.max_contradiction_ratio) {
-    return std::nullopt;
-  }
+  if (mean_ratio <= max_contradiction_ratio) return std::nullopt;
   Match match;
   match.verdict = Verdict::kContradicted;
   match.closure.reference = reference.id;

@@ -31,10 +31,11 @@ namespace cartographer_sdf {
     const Rigid2& T_reference_query, double max_distance, double max_rotation);
 
 // The pose, as registration mends it, where walls of either stand in the free
-// space of the other nonetheless, by far more than a single match may have it;
-// its verdict is kContradicted. None where they do not.
+// space of the other nonetheless: more than this fraction of them, in the mean
+// of both directions. Its verdict is kContradicted. None where they do not.
 [[nodiscard]] std::optional<Match> FindContradiction(
-    const MatchOptions& options, const Place& reference, const Place& query,
+    const MatchOptions& options, double max_contradiction_ratio,
+    const Place& reference, const Place& query,
     const Rigid2& T_reference_query);
 
 }  // namespace cartographer_sdf

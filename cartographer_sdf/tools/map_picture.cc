@@ -21,8 +21,20 @@ std::vector<PlacedGrid> Grids(const MapState& state,
   return grids;
 }
 
-// The middle of a submap's nodes, in its frame: where the robot was.
-std::map<SubmapId, Eigen::Vector2d> Centres(const PoseGraph& pose_graph) {
+void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
+               Picture* const picture) {
+  std::map<int, std::vector<Eigen::Vector2d>> paths;
+  for (const auto& [id, node] : pose_graph.nodes) {
+    paths[id.trajectory].push_back(node.T_map_node.translation());
+  }
+  for (const auto& [trajectory, path] : paths) {
+    DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
+  }
+}
+
+}  // namespace
+
+std::map<SubmapId, Eigen::Vector2d> SubmapCentres(const PoseGraph& pose_graph) {
   std::map<SubmapId, std::pair<Eigen::Vector2d, int>> sums;
   for (const auto& [id, pose] : pose_graph.submap_poses) {
     sums[id] = {Eigen::Vector2d::Zero(), 0};
@@ -41,19 +53,6 @@ std::map<SubmapId, Eigen::Vector2d> Centres(const PoseGraph& pose_graph) {
   return centres;
 }
 
-void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
-               Picture* const picture) {
-  std::map<int, std::vector<Eigen::Vector2d>> paths;
-  for (const auto& [id, node] : pose_graph.nodes) {
-    paths[id.trajectory].push_back(node.T_map_node.translation());
-  }
-  for (const auto& [trajectory, path] : paths) {
-    DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
-  }
-}
-
-}  // namespace
-
 MapPicture::MapPicture(const MapState& state, const PoseGraph& pose_graph,
                        const int max_pixels)
     : pose_graph_(pose_graph), painter_(Grids(state, pose_graph), max_pixels) {}
@@ -67,7 +66,8 @@ void MapPicture::AddSubmap(const SubmapId& id, const OccupancyGrid& grid) {
 
 ReportedPicture MapPicture::Finish(const std::string& caption,
                                    const std::vector<SubmapLink>& links) const {
-  const std::map<SubmapId, Eigen::Vector2d> centres = Centres(pose_graph_);
+  const std::map<SubmapId, Eigen::Vector2d> centres =
+      SubmapCentres(pose_graph_);
   const auto place = [&](const SubmapId& id) {
     return pose_graph_.submap_poses.at(id) * centres.at(id);
   };

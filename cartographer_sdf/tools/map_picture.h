@@ -4,6 +4,7 @@
 #ifndef CARTOGRAPHER_SDF_TOOLS_MAP_PICTURE_H_
 #define CARTOGRAPHER_SDF_TOOLS_MAP_PICTURE_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,11 @@ struct SubmapLink {
   SubmapId to;
   Color color;
 };
+
+// Where the robot was in the middle of each submap, in the submap's frame: the
+// mean of its nodes; the origin where it has none.
+[[nodiscard]] std::map<SubmapId, Eigen::Vector2d> SubmapCentres(
+    const PoseGraph& pose_graph);
 
 // One map as a picture, with the paths that were driven and links of submaps.
 class MapPicture {

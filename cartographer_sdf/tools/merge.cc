@@ -76,6 +76,10 @@ absl::Status RunMerge() {
   if (inputs.size() < 2) {
     return UsageError("--inputs needs two maps at least, separated by commas");
   }
+  for (const std::string& input : inputs) {
+    absl::Status status = CheckIsNoInput(input, FLAGS_output);
+    if (!status.ok()) return status;
+  }
   StageProgress progress;
   const absl::StatusOr<MergingResult> result = MergeSessions(
       options->merging, options->relocalization, options->loop_closing, inputs,

@@ -195,6 +195,10 @@ absl::Status RunRelocalize() {
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
   if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
+  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
+    absl::Status status = CheckIsNoInput(input, FLAGS_output);
+    if (!status.ok()) return status;
+  }
   const Executor executor = MakeExecutor(*num_threads);
   StageProgress progress;
   absl::StatusOr<DescribedMap> map =

@@ -16,6 +16,7 @@
 #include "cartographer_sdf/report/html_report.h"
 #include "cartographer_sdf/report/map_painter.h"
 #include "cartographer_sdf/report/submap_pictures.h"
+#include "cartographer_sdf/tools/map_picture.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -32,6 +33,8 @@ std::string FileName(const std::string& path) {
 struct Layer {
   std::string path;
   std::map<SubmapId, PlacedGrid> submaps;  // in the frame of the picture
+  // Where the robot was in the middle of each, in the same frame.
+  std::map<SubmapId, Eigen::Vector2d> centres;
   std::map<int, std::vector<Eigen::Vector2d>> driven;
   // Of submaps that are not in the file.
   std::map<SubmapId, OccupancyGrid> scan_grids;
@@ -53,26 +56,19 @@ Layer MakeLayer(const std::string& path, const MapState& state,
                 const Rigid2& T_picture_map) {
   Layer layer;
   layer.path = path;
+  const std::map<SubmapId, Eigen::Vector2d> centres =
+      SubmapCentres(state.pose_graph);
   for (const auto& [id, submap] : state.submaps) {
-    layer.submaps[id] = {submap.geometry,
-                         T_picture_map * state.pose_graph.submap_poses.at(id)};
+    const Rigid2 T_picture_submap =
+        T_picture_map * state.pose_graph.submap_poses.at(id);
+    layer.submaps[id] = {submap.geometry, T_picture_submap};
+    layer.centres[id] = T_picture_submap * centres.at(id);
   }
   for (const auto& [id, node] : state.pose_graph.nodes) {
     layer.driven[id.trajectory].push_back(T_picture_map *
                                           node.T_map_node.translation());
   }
   return layer;
-}
-
-// None where the submap is not shown.
-std::optional<Eigen::Vector2d> MiddleInPicture(const Layer& layer,
-                                               const SubmapId& id) {
-  const auto submap = layer.submaps.find(id);
-  if (submap == layer.submaps.end()) return std::nullopt;
-  const CellGeometry& geometry = submap->second.geometry;
-  return submap->second.T_map_submap * geometry.T_submap_grid *
-         Eigen::Vector2d(0.5 * geometry.resolution *
-                         geometry.size.matrix().cast<double>());
 }
 
 class OverlayReport {
@@ -118,11 +114,14 @@ class OverlayReport {
     }
     // What matters most is drawn last.
     for (auto match = matches_.rbegin(); match != matches_.rend(); ++match) {
-      const std::optional<Eigen::Vector2d> from =
-          MiddleInPicture(layers_[match->reference_layer], match->reference);
-      const std::optional<Eigen::Vector2d> to =
-          MiddleInPicture(layers_[match->query_layer], match->query);
-      if (from && to) DrawLink(*from, *to, frame, match->color, &picture);
+      const Layer& reference = layers_[match->reference_layer];
+      const Layer& query = layers_[match->query_layer];
+      const auto from = reference.centres.find(match->reference);
+      const auto to = query.centres.find(match->query);
+      if (from == reference.centres.end() || to == query.centres.end()) {
+        continue;
+      }
+      DrawLink(from->second, to->second, frame, match->color, &picture);
     }
     DrawScaleBar(frame, &picture);
     content->maps.push_back({caption, picture.EncodePng()});
@@ -244,6 +243,9 @@ void AddStages(const std::vector<std::pair<std::string, double>>& stages,
 // The layers of a merged map, in its frame.
 std::vector<Layer> LayersOf(const MergingResult& result) {
   std::vector<Layer> layers;
+  // As read: optimisation does not move nodes within a submap by much.
+  const std::map<SubmapId, Eigen::Vector2d> centres =
+      SubmapCentres(result.state.pose_graph);
   for (const MapPart& part : result.parts) {
     Layer layer;
     layer.path = part.path;
@@ -256,6 +258,8 @@ std::vector<Layer> LayersOf(const MergingResult& result) {
         if (pose == result.pose_graph.submap_poses.end()) continue;
         layer.submaps[{trajectory, submap->first.index}] = {
             submap->second.geometry, pose->second};
+        layer.centres[{trajectory, submap->first.index}] =
+            pose->second * centres.at(submap->first);
       }
       for (auto node = result.pose_graph.nodes.lower_bound({number, 0});
            node != result.pose_graph.nodes.end() &&
