@@ -8,10 +8,12 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
-#include "cartographer_sdf/audit/node_scans.h"
 #include "cartographer_sdf/audit/pose_evidence.h"
+#include "cartographer_sdf/loop_closing/closure_stages.h"
+#include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
 #include "cartographer_sdf/verification/agreement.h"
 #include "cartographer_sdf/verification/registration.h"
@@ -405,7 +407,10 @@ absl::StatusOr<FalsifiedMap> FalsifyMap(
       nodes.insert(node);
     }
   }
-  const absl::StatusOr<ScansByNode> scans = ReadScans(path, nodes);
+  const absl::StatusOr<ScansByNode> scans =
+      ReadScans(nodes, [&path](const std::set<NodeId>& some) {
+        return ReadPointClouds(path, some);
+      });
   if (!scans.ok()) return scans.status();
 
   Forger forger(loop_closing, options, *map, *scans);

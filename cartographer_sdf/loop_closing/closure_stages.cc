@@ -49,6 +49,19 @@ void SelectClosures(const ConsistencyOptions& options, const MapState& state,
   }
 }
 
+absl::StatusOr<ScansByNode> ReadScans(
+    const std::set<NodeId>& nodes, const PointCloudReader& read_point_clouds) {
+  ScansByNode scans;
+  if (nodes.empty()) return scans;
+  const absl::StatusOr<std::map<NodeId, PointCloud2>> clouds =
+      read_point_clouds(nodes);
+  if (!clouds.ok()) return clouds.status();
+  for (const auto& [node, cloud] : *clouds) {
+    if (!cloud.empty()) scans.emplace(node, ToSurfacePoints(cloud));
+  }
+  return scans;
+}
+
 absl::StatusOr<ScansByNode> ReadScansToLift(
     const LiftingOptions& options, const PoseGraph& pose_graph,
     const std::vector<ClosureOutcome>& outcomes,
@@ -65,15 +78,7 @@ absl::StatusOr<ScansByNode> ReadScansToLift(
       nodes.insert(node);
     }
   }
-  ScansByNode scans;
-  if (nodes.empty()) return scans;
-  const absl::StatusOr<std::map<NodeId, PointCloud2>> clouds =
-      read_point_clouds(nodes);
-  if (!clouds.ok()) return clouds.status();
-  for (const auto& [node, cloud] : *clouds) {
-    if (!cloud.empty()) scans.emplace(node, ToSurfacePoints(cloud));
-  }
-  return scans;
+  return ReadScans(nodes, read_point_clouds);
 }
 
 void LiftClosures(const LiftingOptions& options, const PoseGraph& pose_graph,

@@ -34,6 +34,11 @@ using PointCloudReader =
     std::function<absl::StatusOr<std::map<NodeId, PointCloud2>>(
         const std::set<NodeId>&)>;
 
+// What is not empty of them, each point as certain as any. Fails as the reader
+// does.
+[[nodiscard]] absl::StatusOr<ScansByNode> ReadScans(
+    const std::set<NodeId>& nodes, const PointCloudReader& read_point_clouds);
+
 // The scans that LiftClosures registers. Fails as the reader does.
 [[nodiscard]] absl::StatusOr<ScansByNode> ReadScansToLift(
     const LiftingOptions& options, const PoseGraph& pose_graph,

@@ -85,24 +85,6 @@ std::vector<Rigid2> ProposePoses(
   return poses;
 }
 
-ClosureEvidence MakeEvidence(const Agreement& agreement,
-                             const int num_inliers) {
-  const DirectedAgreement& a = agreement.query_in_reference;
-  const DirectedAgreement& b = agreement.reference_in_query;
-  ClosureEvidence evidence;
-  evidence.inliers = num_inliers;
-  evidence.overlap_area = agreement.overlap_area;
-  evidence.overlap = agreement.overlap;
-  evidence.hit_ratio = std::min(a.HitRatio(), b.HitRatio());
-  evidence.contradiction_ratio =
-      std::max(a.ContradictionRatio(), b.ContradictionRatio());
-  const double hits = a.hits + b.hits;
-  evidence.residual =
-      hits > 0. ? std::sqrt((a.squared_distance + b.squared_distance) / hits)
-                : 0.;
-  return evidence;
-}
-
 Match MakeMatch(const MatchOptions& options, const Place& reference,
                 const Place& query,
                 const std::vector<Correspondence>& correspondences,
@@ -118,13 +100,30 @@ Match MakeMatch(const MatchOptions& options, const Place& reference,
                   verification.T_reference_query,
                   verification.information,
                   verification.score,
-                  MakeEvidence(verification.agreement,
-                               static_cast<int>(match.inliers.size()))};
+                  EvidenceOf(verification.agreement,
+                             static_cast<int>(match.inliers.size()))};
   match.verification = std::move(verification);
   return match;
 }
 
 }  // namespace
+
+ClosureEvidence EvidenceOf(const Agreement& agreement, const int num_inliers) {
+  const DirectedAgreement& a = agreement.query_in_reference;
+  const DirectedAgreement& b = agreement.reference_in_query;
+  ClosureEvidence evidence;
+  evidence.inliers = num_inliers;
+  evidence.overlap_area = agreement.overlap_area;
+  evidence.overlap = agreement.overlap;
+  evidence.hit_ratio = std::min(a.HitRatio(), b.HitRatio());
+  evidence.contradiction_ratio =
+      std::max(a.ContradictionRatio(), b.ContradictionRatio());
+  const double hits = a.hits + b.hits;
+  evidence.residual =
+      hits > 0. ? std::sqrt((a.squared_distance + b.squared_distance) / hits)
+                : 0.;
+  return evidence;
+}
 
 std::string Validate(const MatchOptions& options) {
   for (const std::string& error :

@@ -66,6 +66,10 @@ struct Match {
   std::optional<NeighbourhoodEvidence> neighbourhood;
 };
 
+// What is told of two submaps that agree so in a pose.
+[[nodiscard]] ClosureEvidence EvidenceOf(const Agreement& agreement,
+                                         int num_inliers = 0);
+
 // Finds the poses in which a place resembles itself, by matching it with
 // itself, so that look-alikes are noticed when it is matched with others.
 void FindSelfSimilarities(const MatchOptions& options, Place* place);

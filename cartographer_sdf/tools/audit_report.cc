@@ -14,6 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/report/html_report.h"
 #include "cartographer_sdf/report/submap_pictures.h"
 #include "cartographer_sdf/tools/map_picture.h"
@@ -77,23 +78,6 @@ std::vector<GroupOutcome> OfInterest(std::vector<GroupOutcome> outcomes) {
                      return a.group->evidence.score < b.group->evidence.score;
                    });
   return outcomes;
-}
-
-ClosureEvidence EvidenceOf(const AuditedGroup& group) {
-  const Agreement& agreement = group.evidence.agreement;
-  const DirectedAgreement& a = agreement.query_in_reference;
-  const DirectedAgreement& b = agreement.reference_in_query;
-  ClosureEvidence evidence;
-  evidence.overlap_area = agreement.overlap_area;
-  evidence.overlap = agreement.overlap;
-  evidence.hit_ratio = std::min(a.HitRatio(), b.HitRatio());
-  evidence.contradiction_ratio =
-      std::max(a.ContradictionRatio(), b.ContradictionRatio());
-  const double hits = a.hits + b.hits;
-  evidence.residual =
-      hits > 0. ? std::sqrt((a.squared_distance + b.squared_distance) / hits)
-                : 0.;
-  return evidence;
 }
 
 std::string VerdictText(const GroupOutcome& outcome) {
@@ -213,7 +197,9 @@ std::vector<HistogramPlot> MakeHistograms(
     (doubtful ? doubtful_scores : kept_scores)
         .push_back(outcome.group->evidence.score);
     (doubtful ? doubtful_contradictions : kept_contradictions)
-        .push_back(100. * EvidenceOf(*outcome.group).contradiction_ratio);
+        .push_back(
+            100. *
+            EvidenceOf(outcome.group->evidence.agreement).contradiction_ratio);
   }
   HistogramPlot scores;
   scores.title = "Scores of the groups";
@@ -284,7 +270,7 @@ absl::Status WriteAuditReport(const std::string& directory,
     reported.closure.query = group.group.query;
     reported.closure.T_reference_query = group.group.T_reference_query;
     reported.closure.score = group.evidence.score;
-    reported.closure.evidence = EvidenceOf(group);
+    reported.closure.evidence = EvidenceOf(group.evidence.agreement);
     reported.accepted = order[k].num_doubtful == 0;
     reported.status = absl::StrCat(reported.accepted ? "kept: " : "doubtful: ",
                                    AuditVerdictName(order[k].verdict));
