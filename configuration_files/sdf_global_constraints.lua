@@ -388,10 +388,10 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Places, evenly spaced, that are searched in the map at first; twice as
     -- many in all each time that leaves the answer uncertain. Larger: slower
     -- where few are enough.
-    num_first_places = 4,
+    num_first_places = 2,
     -- Pairs of submaps that are verified where the answer lays them over each
     -- other. Larger: more is known for and against it, slower.
-    max_num_confirmed_pairs = 150,
+    max_num_confirmed_pairs = 50,
   },
   -- Several maps as one (merge). What is not here is as above.
   merging = {

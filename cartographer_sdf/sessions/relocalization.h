@@ -28,10 +28,10 @@ struct RelocalizationOptions {
   // Places of the query, evenly spaced, that are searched at first; twice as
   // many in all each time that leaves the answer uncertain. Larger: slower
   // where few are enough.
-  int num_first_places = 4;
+  int num_first_places = 2;
   // Pairs of submaps that are verified where the answer lays them over each
   // other. Larger: more agreeing and contradicting matches, slower.
-  int max_num_confirmed_pairs = 150;
+  int max_num_confirmed_pairs = 50;
 };
 [[nodiscard]] std::string Validate(const RelocalizationOptions& options);
 
