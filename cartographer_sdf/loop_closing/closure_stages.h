@@ -34,8 +34,9 @@ using PointCloudReader =
     std::function<absl::StatusOr<std::map<NodeId, PointCloud2>>(
         const std::set<NodeId>&)>;
 
-// What is not empty of them, each point as certain as any. Fails as the reader
-// does.
+// The scans of nodes as points to be registered, all equally certain; nodes
+// without a scan are absent. Does not call the reader where no node is asked
+// for. Fails as the reader does.
 [[nodiscard]] absl::StatusOr<ScansByNode> ReadScans(
     const std::set<NodeId>& nodes, const PointCloudReader& read_point_clouds);
 

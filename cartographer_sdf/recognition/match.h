@@ -66,7 +66,8 @@ struct Match {
   std::optional<NeighbourhoodEvidence> neighbourhood;
 };
 
-// What is told of two submaps that agree so in a pose.
+// Of two submaps in one pose, the worse of both directions; `num_inliers` pairs
+// of keypoints led to it, 0 where none did.
 [[nodiscard]] ClosureEvidence EvidenceOf(const Agreement& agreement,
                                          int num_inliers = 0);
 
