@@ -2,7 +2,7 @@
 -- SPDX-License-Identifier: Apache-2.0
 
 -- The method as published (Millane et al. 2019): Table I, and our choice where
--- the paper is silent (docs/design.md). For comparison, by
+-- the paper is silent (docs/design/). For comparison, by
 -- `match --method paper`: its count of inliers is no verification, and
 -- close_loops refuses it.
 
@@ -15,7 +15,7 @@ place.descriptor.num_bins = 17
 place.descriptor.distance_weight = 0.002
 place.descriptor.secondary_orientation_ratio = 1.
 
-local match = SDF_GLOBAL_CONSTRAINTS.loop_closing.match
+local match = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.match
 match.method = "paper"
 match.correspondence.num_neighbours = 1
 match.correspondence.use_ratio_test = true

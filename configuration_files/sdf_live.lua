@@ -21,13 +21,16 @@ SDF_LIVE = {
   -- Submaps of one trajectory are matched from this difference of their indices
   -- on; nearer ones share scans.
   min_index_gap = 3,
-  -- How places are described, matched, ... : as for saved maps.
+  -- As for saved maps, from the description of a submap to its constraints.
   place = SDF_GLOBAL_CONSTRAINTS.loop_closing.place,
-  match = SDF_GLOBAL_CONSTRAINTS.loop_closing.match,
-  retrieval = SDF_GLOBAL_CONSTRAINTS.loop_closing.retrieval,
-  consistency = SDF_GLOBAL_CONSTRAINTS.loop_closing.consistency,
-  -- The weights are those of constraints; larger pulls harder.
-  lifting = SDF_GLOBAL_CONSTRAINTS.loop_closing.lifting,
+  match = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.match,
+  retrieval = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.retrieval,
+  neighbourhood = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.neighbourhood,
+  consistency = SDF_GLOBAL_CONSTRAINTS.loop_closing.closing.consistency,
+  constraints = SDF_GLOBAL_CONSTRAINTS.loop_closing.closing.constraints,
+  -- Whether matches are verified together with the neighbours of both submaps.
+  -- The newest submap has neighbours on one side only.
+  verify_neighbourhoods = false,
   -- Where a new trajectory is in a loaded map.
   localization = {
     -- Whether it is asked for every trajectory that starts without a pose.
@@ -42,13 +45,8 @@ SDF_LIVE = {
     -- The best so many submaps of the map are matched with the query. Larger:
     -- found sooner, more CPU time.
     max_num_candidates = 50,
-    -- Sum of the scores of all matches that agree on the pose; log-odds. One of
-    -- them must be accepted, the others more likely right than wrong. Larger:
-    -- later and more certain.
-    min_score = 7.,
-    -- By how much more than for any other pose. Larger: look-alikes are told
-    -- apart later and more surely.
-    min_lead = 4.,
+    -- As for saved maps.
+    localizer = SDF_GLOBAL_CONSTRAINTS.localization,
     -- Queries in a row that must say the same.
     min_num_queries = 2,
     -- [m], [rad] Poses nearer than this count as the same.

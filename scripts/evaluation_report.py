@@ -6,7 +6,9 @@
 Maps are NAME=MAP.pbstream,TRUTH.csv[,RELATIONS], or, without any, all of --data:
 NAME.truth.csv beside NAME_open_loop.pbstream or NAME.pbstream, and
 NAME.relations where there are some. Writes evaluation.md and, in a directory of
-that name, the tables (CSV), plots (SVG) and pictures (PNG) that it shows.
+that name, all tables and curves (CSV), plots (SVG), pictures (PNG), options in
+force (Lua) and the commands. The page shows the pictures of SHOWN, which the
+repository keeps; git ignores the rest.
 """
 
 import argparse
@@ -29,6 +31,11 @@ SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
 METHODS = ("sdf", "paper", "shape_context")
 CLEARANCES = (2., 1.5, 1., 0.5)
 OVERLAPS = (0.5, 0.1, 0.2, 0.3, 0.4, 0.6, 0.7)
+# Pictures on the page; .gitignore lists them, too.
+SHOWN = ("intel.random_pairs.svg", "mit_killian.random_pairs.svg",
+         "intel.free_space.svg", "mit_killian.free_space.svg",
+         "willow_1.keypoints.png", "willow_1.feature_window.png",
+         "willow_1.feature_histogram.svg")
 # Table I of the paper, and what it leaves open: names in the options.
 PARAMETERS = {
     "paper": [
@@ -37,20 +44,20 @@ PARAMETERS = {
         ("distance weight", "loop_closing.place.descriptor.distance_weight"),
         ("detection threshold",
          "loop_closing.place.keypoint.detection_threshold"),
-        ("matching max ratio", "loop_closing.match.correspondence.max_ratio"),
+        ("matching max ratio", "loop_closing.recognition.match.correspondence.max_ratio"),
         ("smoothing [cells] (open in the paper)",
          "loop_closing.place.keypoint.smoothing_sigma_cells"),
         ("RANSAC inlier distance [m] (open)",
-         "loop_closing.match.ransac.inlier_distance_meters"),
+         "loop_closing.recognition.match.ransac.inlier_distance_meters"),
         ("inliers of an accepted match (open)",
-         "loop_closing.match.min_num_inliers"),
+         "loop_closing.recognition.match.min_num_inliers"),
     ],
     "shape_context": [
         ("radius [m]", "shape_context.descriptor.radius_meters"),
         ("number of radial bins", "shape_context.descriptor.num_radial_bins"),
         ("number of angular bins", "shape_context.descriptor.num_angular_bins"),
         ("detection threshold", "shape_context.keypoint.detection_threshold"),
-        ("matching max ratio", "loop_closing.match.correspondence.max_ratio"),
+        ("matching max ratio", "loop_closing.recognition.match.correspondence.max_ratio"),
         ("scans of a submap", "shape_context.cloud.max_num_scans"),
         ("points in one square [m] (open)",
          "shape_context.cloud.voxel_size_meters"),
@@ -295,8 +302,13 @@ def relations(runner, evaluated):
 
 # --- The report. --------------------------------------------------------------
 
-def picture(name, caption):
-    return f"![{caption}](evaluation/{name})"
+def pictures(directory, names_and_captions):
+    """Lines of Markdown for those that the page shows."""
+    lines = []
+    for name, caption in names_and_captions:
+        if name in SHOWN:
+            lines += [f"![{caption}]({directory.name}/{name})", ""]
+    return lines
 
 
 def option_values(options):
@@ -360,11 +372,11 @@ def section_random_pairs(runner, maps, results, arguments):
         rows.append(row)
     lines += table(header, rows)
     write_table(runner.directory / "random_pairs.csv", header, rows)
-    for evaluated in maps:
-        lines += [picture(f"{evaluated.name}.random_pairs.svg",
-                          f"Precision and recall on {evaluated.name}")]
+    lines += pictures(runner.directory, [
+        (f"{m.name}.random_pairs.svg", f"Precision and recall on {m.name}")
+        for m in maps])
     lines += [
-        "", "### How this depends on the overlap that makes a match", "",
+        "### How this depends on the overlap that makes a match", "",
         "The paper calls pairs \"with a sufficient proportion of overlapping "
         "observed voxels\" matches and does not say how much is sufficient. "
         "Recall at precision 1 (matches in parentheses); overlap is the common "
@@ -419,10 +431,8 @@ def section_free_space(runner, maps, results):
             show(numbers[f"{n} overlap>={OVERLAPS[0]:g}"].get("ap"))
             for n in names)])
     lines += table(["average precision", *names], rows)
-    for evaluated in maps:
-        lines.append(picture(f"{evaluated.name}.free_space.svg",
-                             f"Free space on {evaluated.name}"))
-    return lines + [""]
+    return lines + pictures(runner.directory, [
+        (f"{m.name}.free_space.svg", f"Free space on {m.name}") for m in maps])
 
 
 def match_rows(name, numbers):
@@ -454,10 +464,9 @@ def section_all_pairs(runner, strict):
             for row in match_rows(name, result["numbers"])]
     lines += table(header, rows)
     write_table(runner.directory / "all_pairs.csv", header, rows)
-    for name in strict:
-        lines.append(picture(f"{name}.all_pairs.svg",
-                             f"Precision and recall over all pairs, {name}"))
-    return lines + [""]
+    return lines + pictures(runner.directory, [
+        (f"{name}.all_pairs.svg", f"Precision and recall over all pairs, {name}")
+        for name in strict])
 
 
 def accepted_rows(name, numbers):
@@ -481,7 +490,7 @@ def section_place_recognition(runner, strict, sessions, figures):
         "submaps has no true pose.", "",
         "### Loop closure within one trajectory", "",
         "Each submap against all before it, pairwise: `close_loops` and "
-        "`match --agree` also ask whether matches agree with each other.", ""]
+        "`match --agree` also check whether matches are mutually consistent.", ""]
     rows = [row for name, result in strict.items() if name not in sessions
             for row in accepted_rows(name, result["numbers"])]
     lines += table(header, rows)
@@ -492,9 +501,7 @@ def section_place_recognition(runner, strict, sessions, figures):
         lines += table(header, session_rows)
         rows += session_rows
     write_table(runner.directory / "place_recognition.csv", header, rows)
-    for name, caption in figures:
-        lines += [picture(name, caption), "", caption, ""]
-    return lines
+    return lines + pictures(runner.directory, figures)
 
 
 def section_relations(runner, maps, results):
@@ -634,15 +641,15 @@ def evaluate(arguments, maps, sessions):
             "# The paper's evaluation", "",
             f"Made by `{command}` on {datetime.date.today()}, commit "
             f"{commit_name()}, {processor()}, {os.cpu_count()} cores, in "
-            f"{minutes:.0f} minutes. The commands are at the end; tables and "
-            "curves lie beside this page as CSV.", "",
+            f"{minutes:.0f} minutes. Tables, curves, plots, pictures, options "
+            f"in force and commands are in {directory.name}/.", "",
             "Methods: *sdf* is this project's, as shipped; *paper* is Millane et "
             "al. 2019 as printed; *shape_context* is what they compare with, "
             "curvature clusters (Bosse and Zlot 2009) described by shape contexts "
             "(Belongie et al. 2002) on aggregated point clouds. paper and "
             "shape_context share matching and RANSAC.", "",
-            "## Parameters", "", "As the paper's Table I, and what it leaves "
-            "open; all options in force are beside this page (*.options.lua).", "",
+            "## Parameters", "", "The paper's Table I, and the parameters "
+            "that it leaves open.", "",
             *parameter_table(runner),
             *section_random_pairs(runner, maps, pair_results, arguments),
             *section_free_space(runner, maps, pair_results),
@@ -653,11 +660,11 @@ def evaluate(arguments, maps, sessions):
                                relation_results),
             *section_failures(strict, remarks)]
         others = [f for f in figures if "match" not in f[0]]
-        if others:
-            lines += ["## How features come about", ""]
-            for name, caption in others:
-                lines += [picture(name, caption), "", caption, ""]
-        lines += ["## Commands", "", "```", *runner.commands, "```", ""]
+        shown = pictures(directory, others)
+        if shown:
+            lines += ["## Features", "", *shown]
+        (directory / "commands.txt").write_text(
+            "\n".join(runner.commands) + "\n", encoding="utf-8")
     temporary = arguments.output.with_suffix(".tmp")
     temporary.write_text("\n".join(lines), encoding="utf-8")
     os.replace(temporary, arguments.output)
@@ -697,7 +704,7 @@ def main():
                         default=SOURCE_DIR / "build" / "cartographer_sdf")
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
-                        / str(datetime.date.today()) / "evaluation.md")
+                        / "evaluation.md")
     arguments = parser.parse_args()
     if arguments.pairs < 1:
         parser.error("--pairs must be positive")

@@ -41,7 +41,7 @@ GRIDS = {
          (0.0025, 0.005)),
         ("loop_closing.place.descriptor.distance_weight", "distance weight",
          (0.002, 0.008)),
-        ("loop_closing.match.correspondence.max_ratio", "ratio",
+        ("loop_closing.recognition.match.correspondence.max_ratio", "ratio",
          (0.75, 0.85)),
     ],
     "shape_context": [
@@ -49,7 +49,7 @@ GRIDS = {
         ("shape_context.keypoint.detection_threshold", "threshold",
          (0.05, 0.1)),
         ("shape_context.descriptor.num_angular_bins", "angular bins", (6, 12)),
-        ("loop_closing.match.correspondence.max_ratio", "ratio",
+        ("loop_closing.recognition.match.correspondence.max_ratio", "ratio",
          (0.75, 0.85)),
     ],
 }
@@ -321,7 +321,7 @@ def main():
                         default=SOURCE_DIR / "build" / "cartographer_sdf")
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
-                        / str(datetime.date.today()) / "grid_search.md")
+                        / "grid_search.md")
     arguments = parser.parse_args()
     if arguments.jobs < 1 or arguments.pairs < 1 or arguments.max_points < 0:
         parser.error("--jobs and --pairs must be positive, --max_points not "

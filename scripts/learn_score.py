@@ -337,7 +337,8 @@ def read_set_list(path):
 
 # All that depends on the weights in force.
 CONFIGURATION = """include "sdf_global_constraints.lua"
-SDF_GLOBAL_CONSTRAINTS.loop_closing.match.verification.min_score = -1e9
+local recognition = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition
+recognition.match.verification.judgement.min_score = -1e9
 return SDF_GLOBAL_CONSTRAINTS
 """
 
@@ -364,17 +365,21 @@ class Workshop:
                          else CONFIGURATION)
         if not os.access(program, os.X_OK):
             raise Failure(f"build first: {program} is missing")
-        options = (SOURCE_DIR / "configuration_files" /
-                   "sdf_global_constraints.lua").read_bytes()
+        options = {
+            name: (SOURCE_DIR / "configuration_files" / name).read_bytes()
+            for name in ("sdf_global_constraints.lua",
+                         "sdf_advanced_options.lua")}
         digest = hashlib.sha256(program.read_bytes())
-        digest.update(options)
+        for content in options.values():
+            digest.update(content)
         digest.update(configuration.encode())
         self.folder = (work / digest.hexdigest()[:12]).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.program = self.folder / "cartographer_sdf"
         if not self.program.exists():
             shutil.copy2(program, self.program)
-        (self.folder / "sdf_global_constraints.lua").write_bytes(options)
+        for name, content in options.items():
+            (self.folder / name).write_bytes(content)
         (self.folder / "learn.lua").write_text(configuration,
                                                encoding="utf-8")
 

@@ -32,15 +32,15 @@ PICTURE_PIXELS = 700
 # What `figures` draws of a submap, and what it shows.
 SUBMAP_FIGURES = (
     ("grid.png", "A submap as a probability grid"),
-    ("field.png", "and as a signed distance field: blue is far from walls, "
+    ("field.png", "The signed distance field: blue is far from walls, "
      "contours are half a metre apart"),
     ("keypoints.png", "Keypoints by class: maxima red, saddles green, minima "
      "yellow"),
     ("surface.png", "The field as a surface, with its keypoints"),
     ("feature_location.png", "Where a feature lies"),
-    ("feature_window.png", "the weighted gradients in its window, and the "
+    ("feature_window.png", "A feature's window: weighted gradients and their "
      "dominant direction (red)"),
-    ("feature_histogram.svg", "and its descriptor"),
+    ("feature_histogram.svg", "The descriptor of that feature"),
     ("mask_2.0m.png", "Where features may lie within 2 m of walls"),
     ("mask_1.5m.png", "within 1.5 m"),
     ("mask_1.0m.png", "within 1 m"),

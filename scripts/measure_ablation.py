@@ -5,7 +5,7 @@
 """Measures what each stage is worth by taking it away.
 
 Matches each data set with the shipped options and with variants of them, side
-by side, and writes docs/results/DATE/ablation.md. The maps are no part of the
+by side, and writes docs/results/ablation.md. The maps are no part of the
 project; see CONTRIBUTING.md.
 """
 
@@ -39,7 +39,8 @@ SETS = {
 class Variant(typing.NamedTuple):
     name: str
     what: str
-    # Lua; `place`, `match`, `verification`, `weights` and `neighbourhood` are
+    # Lua; `place`, `match`, `verification`, `judgement`, `weights` and
+    # `neighbourhood` are
     # those tables.
     overrides: str = ""
     flags: tuple = ()
@@ -52,9 +53,9 @@ class Variant(typing.NamedTuple):
 # the others.
 VARIANTS = [
     Variant("shipped", "all options as shipped"),
-    Variant("alone", "each pair by itself, without its neighbours", "",
+    Variant("alone", "each pair by itself, without its neighbourhood", "",
             ("--alone",), False),
-    Variant("no_proposals", "neighbours judge, but propose no poses",
+    Variant("no_proposals", "neighbourhoods are verified, but propose no poses",
             "neighbourhood.min_proposing_score = 1e9"),
     Variant("paper", "the method as published: ratio test, RANSAC, inliers "
             "counted", "", ("--method", "paper"), False),
@@ -76,17 +77,17 @@ VARIANTS = [
     Variant("score_without_contradictions",
             "neither the score nor the verdict knows of contradictions",
             'drop("contradiction")\n'
-            "verification.max_contradiction_ratio = 1.", (), False),
+            "judgement.max_contradiction_ratio = 1.", (), False),
     Variant("no_contradictions", "both; they still tell refined poses of "
             "a pair apart",
             "verification.ranking.contradiction_weight = 0.\n"
             'drop("contradiction")\n'
-            "verification.max_contradiction_ratio = 1.", (), False),
+            "judgement.max_contradiction_ratio = 1.", (), False),
     Variant("certainty_ignored",
             "every wall and every free cell is as certain as any",
             "verification.agreement.weigh_by_certainty = false", (), False),
     Variant("no_rivals", "the next best pose does not matter",
-            'drop("margin")\nverification.min_margin = 0.', (), False),
+            'drop("margin")\njudgement.min_margin = 0.', (), False),
     Variant("wall_evidence_as_score", "the score is the walls' evidence alone",
             'keep("wall_evidence")', (), False),
     Variant("agree", "and accepted matches must agree with each other", "",
@@ -95,10 +96,12 @@ VARIANTS = [
 
 PREAMBLE = """include "sdf_global_constraints.lua"
 local place = SDF_GLOBAL_CONSTRAINTS.loop_closing.place
-local match = SDF_GLOBAL_CONSTRAINTS.loop_closing.match
+local recognition = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition
+local match = recognition.match
 local verification = match.verification
-local neighbourhood = SDF_GLOBAL_CONSTRAINTS.loop_closing.neighbourhood
-local weights = verification.score_weights
+local neighbourhood = recognition.neighbourhood
+local judgement = verification.judgement
+local weights = judgement.score_weights
 -- Takes terms out of the score.
 local function drop(part)
   local found = false
@@ -125,8 +128,8 @@ COLUMNS = [("recall_p1", "recall at precision 1"), ("recall_p99", "at .99"),
            ("accepted_wrong", "accepted wrong"), ("cpu", "CPU time")]
 IDS = ["reference_trajectory", "reference_index", "query_trajectory",
        "query_index"]
-# Names of the selection's verdicts, see closure/consistency.h.
-REFUSED = ("contradicted_by_others", "unsupported")
+# Names of the selection's verdicts, see closing/closure.h.
+REFUSED = ("inconsistent", "unsupported")
 
 
 class Failure(Exception):
@@ -306,7 +309,7 @@ def main():
                         default=SOURCE_DIR / "build" / "cartographer_sdf")
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
-                        / str(datetime.date.today()) / "ablation.md")
+                        / "ablation.md")
     arguments = parser.parse_args()
     if arguments.jobs < 1:
         parser.error("--jobs must be positive")

@@ -7,7 +7,7 @@ Good maps (close_loops of the open loop ones, the stock one, simulated ones) are
 spoilt by falsify with wrong constraints of each kind, and audited. What is right
 is told by falsify for what it added, and by the true poses for what was there: a
 constraint puts its node less than 0.5 m from the truth (right) or more than 1 m or
-10 degrees (wrong). Writes docs/results/DATE/audit.md.
+10 degrees (wrong). Writes docs/results/audit.md.
 
 usage: measure_audit.py [--build DIR] [--data DIR] [--work DIR] [--maps NAME,...] [--output FILE]
 """
@@ -216,7 +216,7 @@ def main():
     parser.add_argument("--maps", default=",".join(MAPS))
     today = datetime.date.today().isoformat()
     parser.add_argument("--output", type=pathlib.Path,
-                        default=SOURCE / "docs/results" / today / "audit.md")
+                        default=SOURCE / "docs/results/audit.md")
     arguments = parser.parse_args()
     program = Program(arguments.build / "cartographer_sdf")
     arguments.work.mkdir(parents=True, exist_ok=True)

@@ -2,11 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Measures close_loops and match on the real maps and writes
-# docs/results/DATE/close_loops.md. The maps are no part of the project; see
-# CONTRIBUTING.md.
+# Measures close_loops and match on the real maps, and writes the transcript that
+# docs/results/close_loops.md sums up to docs/results/runs/close_loops.md, or to
+# OUTPUT. The maps are no part of the project; see CONTRIBUTING.md.
 #
-# usage: measure_close_loops.sh [DIRECTORY OF THE MAPS, default ../shared/data]
+# usage: [OUTPUT=FILE] measure_close_loops.sh [DIRECTORY OF THE MAPS, default ../shared/data]
 
 set -euo pipefail
 
@@ -16,14 +16,13 @@ SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
 DATA_DIR="${1:-${SOURCE_DIR}/../shared/data}"
 PROGRAM="${BUILD_DIR}/cartographer_sdf"
-RESULT_DIR="${SOURCE_DIR}/docs/results/$(date +%Y-%m-%d)"
-REPORT="${RESULT_DIR}/close_loops.md"
+REPORT="${OUTPUT:-${SOURCE_DIR}/docs/results/runs/close_loops.md}"
 WORK_DIR="$(mktemp -d)"
 trap 'rm -rf "${WORK_DIR}"' EXIT
 
 [[ -d "${DATA_DIR}" ]] || { echo "no maps at ${DATA_DIR}" >&2; exit 1; }
 [[ -x "${PROGRAM}" ]] || { echo "build first: ${PROGRAM} is missing" >&2; exit 1; }
-mkdir -p "${RESULT_DIR}"
+mkdir -p "$(dirname "${REPORT}")"
 
 # Prints a command as a reader would type it, and what it says.
 show() {

@@ -226,10 +226,10 @@ def judge(truth, run, nodes):
     is_right = [meters < RIGHT_M and degrees < RIGHT_DEGREES for meters, degrees in errors]
     said = [math.hypot(answer["T_map_node"]["x"] - truth.in_map(answer["time"])[0],
                        answer["T_map_node"]["y"] - truth.in_map(answer["time"])[1])
-            for answer in run["localizations"] if answer["located"]]
+            for answer in run["localizations"] if answer["localized"]]
     first = next((i for i, node in enumerate(nodes) if node["connected"]), None)
     if first is None:
-        return {"verdict": "not located", "said_error_m": said}
+        return {"verdict": "not localised", "said_error_m": said}
     # From where on it stays right.
     settled = len(nodes)
     while settled > first and is_right[settled - 1]:
@@ -312,13 +312,13 @@ def quantiles(values, digits=1):
 
 def report_localization(rows):
     """One row for each variant."""
-    print("\n| | starts | right | near | wrong | not located | until the first constraint:"
+    print("\n| | starts | right | near | wrong | not localised | until the first constraint:"
           " [m] | [s] | CPU [s] | until the pose is right: [m] | [s] | last error [m] |"
           "\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for variant in dict.fromkeys(row["variant"] for row in rows):
         mine = [row for row in rows if row["variant"] == variant]
         cells = [len(mine)] + [sum(row["verdict"] == verdict for row in mine)
-                               for verdict in ("right", "near", "wrong", "not located")]
+                               for verdict in ("right", "near", "wrong", "not localised")]
         for moment, keys in (("connected", ("meters", "seconds", "cpu_seconds")),
                              ("settled", ("meters", "seconds"))):
             cells += [quantiles([row[moment][key] for row in mine if moment in row])

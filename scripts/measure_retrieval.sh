@@ -3,10 +3,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Measures what match --retrieval finds of what match finds, on the real maps,
-# and writes docs/results/DATE/retrieval_runs.md. The maps are no part of the
+# and writes the transcript that docs/results/retrieval.md sums up to
+# docs/results/runs/retrieval.md, or to OUTPUT. The maps are no part of the
 # project; see CONTRIBUTING.md.
 #
-# usage: measure_retrieval.sh [DIRECTORY OF THE MAPS, default ../shared/data]
+# usage: [OUTPUT=FILE] measure_retrieval.sh [DIRECTORY OF THE MAPS, default ../shared/data]
 
 set -euo pipefail
 
@@ -16,14 +17,13 @@ SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
 DATA_DIR="${1:-${SOURCE_DIR}/../shared/data}"
 PROGRAM="${BUILD_DIR}/cartographer_sdf"
-RESULT_DIR="${SOURCE_DIR}/docs/results/$(date +%Y-%m-%d)"
-REPORT="${RESULT_DIR}/retrieval_runs.md"
+REPORT="${OUTPUT:-${SOURCE_DIR}/docs/results/runs/retrieval.md}"
 WORK_DIR="$(mktemp -d)"
 trap 'rm -rf "${WORK_DIR}"' EXIT
 
 [[ -d "${DATA_DIR}" ]] || { echo "no maps at ${DATA_DIR}" >&2; exit 1; }
 [[ -x "${PROGRAM}" ]] || { echo "build first: ${PROGRAM} is missing" >&2; exit 1; }
-mkdir -p "${RESULT_DIR}"
+mkdir -p "$(dirname "${REPORT}")"
 
 # Exactly the best so many candidates of each submap.
 for count in 5 10 20; do

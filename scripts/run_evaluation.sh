@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Runs the paper's evaluation on maps with truth and writes a report with tables
-# (CSV and Markdown), plots (SVG) and pictures under docs/results/DATE/.
+# Runs the paper's evaluation on maps with truth: docs/results/evaluation.md, and
+# tables, plots and pictures in docs/results/evaluation/.
 #
 # usage: run_evaluation.sh [--help] [NAME=MAP.pbstream,TRUTH.csv[,RELATIONS] ...]
 

@@ -58,14 +58,19 @@ void VisitOptions(Visitor& visit, CorrespondenceOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, HypothesisOptions& options) {
-  visit("max_num_hypotheses", options.max_num_hypotheses);
+void VisitOptions(Visitor& visit, PoseVotingOptions& options) {
   visit("max_num_correspondences", options.max_num_correspondences);
   visit("max_length_difference_meters", options.max_length_difference_meters);
   visit("max_orientation_difference", options.max_orientation_difference);
   visit("min_baseline_meters", options.min_baseline_meters);
-  visit("cluster_distance_meters", options.cluster_distance_meters);
-  visit("cluster_rotation", options.cluster_rotation);
+  visit("bin_distance_meters", options.bin_distance_meters);
+  visit("bin_rotation", options.bin_rotation);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, HypothesisOptions& options) {
+  visit("max_num_hypotheses", options.max_num_hypotheses);
+  visit("votes", options.votes);
 }
 
 template <typename Visitor>
@@ -102,6 +107,7 @@ void VisitOptions(Visitor& visit, AgreementOptions& options) {
   visit("hit_distance_meters", options.hit_distance_meters);
   visit("contradiction_distance_meters", options.contradiction_distance_meters);
   visit("weigh_by_certainty", options.weigh_by_certainty);
+  visit("max_num_points", options.max_num_points);
 }
 
 template <typename Visitor>
@@ -115,17 +121,21 @@ void VisitOptions(Visitor& visit, ScoreWeights& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, VerificationOptions& options) {
-  visit("ranking", options.ranking);
-  visit("registration", options.registration);
-  visit("agreement", options.agreement);
-  visit("num_agreement_points", options.num_agreement_points);
+void VisitOptions(Visitor& visit, JudgementOptions& options) {
   visit("score_weights", options.score_weights);
   visit("min_overlap_area", options.min_overlap_area);
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("min_scatter_eigenvalue", options.min_scatter_eigenvalue);
   visit("min_score", options.min_score);
   visit("min_margin", options.min_margin);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, VerificationOptions& options) {
+  visit("ranking", options.ranking);
+  visit("registration", options.registration);
+  visit("agreement", options.agreement);
+  visit("judgement", options.judgement);
 }
 
 [[nodiscard]] inline std::vector<std::pair<std::string, Method>> OptionNames(
@@ -158,16 +168,6 @@ void VisitOptions(Visitor& visit, TearOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, PoseVoteOptions& options) {
-  visit("max_num_correspondences", options.max_num_correspondences);
-  visit("max_length_difference_meters", options.max_length_difference_meters);
-  visit("max_orientation_difference", options.max_orientation_difference);
-  visit("min_baseline_meters", options.min_baseline_meters);
-  visit("bin_distance_meters", options.bin_distance_meters);
-  visit("bin_rotation", options.bin_rotation);
-}
-
-template <typename Visitor>
 void VisitOptions(Visitor& visit, RetrievalOptions& options) {
   visit("num_neighbours", options.num_neighbours);
   visit("max_clearance_difference_meters",
@@ -176,7 +176,6 @@ void VisitOptions(Visitor& visit, RetrievalOptions& options) {
   visit("min_score", options.min_score);
   visit("min_num_candidates", options.min_num_candidates);
   visit("max_num_candidates", options.max_num_candidates);
-  visit("max_num_hypotheses", options.max_num_hypotheses);
 }
 
 template <typename Visitor>
@@ -193,8 +192,9 @@ void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, LiftingOptions& options) {
+void VisitOptions(Visitor& visit, ConstraintOptions& options) {
   visit("num_nodes_per_submap", options.num_nodes_per_submap);
+  visit("min_num_constraints", options.min_num_constraints);
   visit("translation_weight", options.translation_weight);
   visit("rotation_weight", options.rotation_weight);
   visit("translation_sigma_meters", options.translation_sigma_meters);
@@ -216,7 +216,7 @@ void VisitOptions(Visitor& visit, OptimizationOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, WithdrawalOptions& options) {
+void VisitOptions(Visitor& visit, OutlierRejectionOptions& options) {
   visit("max_translation_error_meters", options.max_translation_error_meters);
   visit("max_rotation_error", options.max_rotation_error);
   visit("max_num_rounds", options.max_num_rounds);
@@ -244,21 +244,31 @@ void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
-  visit("place", options.place);
+void VisitOptions(Visitor& visit, RecognitionOptions& options) {
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
   visit("use_retrieval", options.use_retrieval);
   visit("retrieval", options.retrieval);
-  visit("ask_neighbours", options.ask_neighbours);
+  visit("verify_neighbourhoods", options.verify_neighbourhoods);
   visit("neighbourhood", options.neighbourhood);
-  visit("silence_torn_submaps", options.silence_torn_submaps);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, ClosingOptions& options) {
+  visit("detect_torn_submaps", options.detect_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);
-  visit("lifting", options.lifting);
+  visit("constraints", options.constraints);
   visit("optimization", options.optimization);
   visit("infer_odometry_weights", options.infer_odometry_weights);
-  visit("withdrawal", options.withdrawal);
+  visit("outlier_rejection", options.outlier_rejection);
+}
+
+template <typename Visitor>
+void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
+  visit("place", options.place);
+  visit("recognition", options.recognition);
+  visit("closing", options.closing);
 }
 
 template <typename Visitor>
@@ -276,37 +286,7 @@ void VisitOptions(Visitor& visit, AuditOptions& options) {
   visit("max_agreeing_translation_meters",
         options.max_agreeing_translation_meters);
   visit("max_agreeing_rotation", options.max_agreeing_rotation);
-  visit("withdrawal", options.withdrawal);
-}
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, SubmapCloudOptions& options) {
-  visit("max_num_scans", options.max_num_scans);
-  visit("voxel_size_meters", options.voxel_size_meters);
-}
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, CurvatureClusterOptions& options) {
-  visit("scatter_radius_meters", options.scatter_radius_meters);
-  visit("min_num_neighbours", options.min_num_neighbours);
-  visit("detection_threshold", options.detection_threshold);
-  visit("cluster_radius_meters", options.cluster_radius_meters);
-  visit("min_num_points", options.min_num_points);
-}
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ShapeContextOptions& options) {
-  visit("radius_meters", options.radius_meters);
-  visit("num_radial_bins", options.num_radial_bins);
-  visit("num_angular_bins", options.num_angular_bins);
-  visit("orientation_radius_meters", options.orientation_radius_meters);
-}
-
-template <typename Visitor>
-void VisitOptions(Visitor& visit, CloudPlaceOptions& options) {
-  visit("cloud", options.cloud);
-  visit("keypoint", options.keypoint);
-  visit("descriptor", options.descriptor);
+  visit("outlier_rejection", options.outlier_rejection);
 }
 
 template <typename Visitor>
@@ -330,15 +310,14 @@ void VisitOptions(Visitor& visit, ScanPlaceOptions& options) {
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, RelocalizationOptions& options) {
+void VisitOptions(Visitor& visit, LocalizationOptions& options) {
   visit("placement", options.placement);
-  visit("scan_places", options.scan_places);
   visit("num_first_places", options.num_first_places);
   visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
 }
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, MergingOptions& options) {
+void VisitOptions(Visitor& visit, FoldCheckOptions& options) {
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
 }
@@ -353,9 +332,9 @@ void VisitOptions(Visitor& visit, ReportOptions& options) {
 template <typename Visitor>
 void VisitOptions(Visitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
-  visit("shape_context", options.shape_context);
-  visit("relocalization", options.relocalization);
-  visit("merging", options.merging);
+  visit("localization", options.localization);
+  visit("scan_places", options.scan_places);
+  visit("fold_check", options.fold_check);
   visit("audit", options.audit);
   visit("report", options.report);
 }

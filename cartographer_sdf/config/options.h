@@ -12,21 +12,23 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cartographer_sdf/audit/audit.h"
-#include "cartographer_sdf/evaluation/shape_context.h"
-#include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/apps/audit.h"
+#include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/apps/fold_check.h"
+#include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_places.h"
 #include "cartographer_sdf/report/report_options.h"
-#include "cartographer_sdf/sessions/merging.h"
-#include "cartographer_sdf/sessions/relocalization.h"
 
 namespace cartographer_sdf {
 
+// The table of the configuration files.
+constexpr char kOptionsTable[] = "SDF_GLOBAL_CONSTRAINTS";
+
 struct Options {
   LoopClosingOptions loop_closing;
-  // The comparison method's description of submaps, `--method shape_context`.
-  CloudPlaceOptions shape_context;
-  RelocalizationOptions relocalization;
-  MergingOptions merging;
+  LocalizationOptions localization;
+  ScanPlaceOptions scan_places;
+  FoldCheckOptions fold_check;
   AuditOptions audit;
   ReportOptions report;
 };
@@ -38,6 +40,10 @@ struct Options {
 // Looks for the file and what it includes in the directories, in their order.
 [[nodiscard]] absl::StatusOr<Options> LoadOptions(
     const std::vector<std::string>& directories, const std::string& basename);
+
+// What places depend on, as text: the key of place files (place_file.h).
+[[nodiscard]] std::string FormatPlaceOptions(const PlaceOptions& place,
+                                             const MatchOptions& match);
 
 // As Lua that LoadOptions would read.
 [[nodiscard]] std::string FormatOptions(const Options& options);

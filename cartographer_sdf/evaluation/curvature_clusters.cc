@@ -46,6 +46,47 @@ Eigen::Vector2d FindMode(const PointRaster& raster, const SubmapCloud& points,
   return position;
 }
 
+// Where mean shifts end, and what began them.
+struct Mode {
+  Eigen::Vector2d position;
+  int num_points;
+  double sum_curvatures;
+};
+
+// The indices of the points, the sharpest first.
+std::vector<size_t> ByFallingWeight(const std::vector<double>& weights) {
+  std::vector<size_t> order(weights.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&weights](const size_t a, const size_t b) {
+                     return weights[a] > weights[b];
+                   });
+  return order;
+}
+
+// The modes of the sharpest points are the ones that others join.
+std::vector<Mode> FindModes(const SubmapCloud& points,
+                            const std::vector<double>& weights,
+                            const double radius) {
+  const PointRaster raster(points, radius);
+  std::vector<Mode> modes;
+  for (const size_t k : ByFallingWeight(weights)) {
+    const Eigen::Vector2d mode =
+        FindMode(raster, points, weights, radius, points[k]);
+    const auto known =
+        std::find_if(modes.begin(), modes.end(), [&](const Mode& other) {
+          return (other.position - mode).norm() < radius;
+        });
+    if (known == modes.end()) {
+      modes.push_back({mode, 1, weights[k]});
+    } else {
+      ++known->num_points;
+      known->sum_curvatures += weights[k];
+    }
+  }
+  return modes;
+}
+
 }  // namespace
 
 std::string Validate(const CurvatureClusterOptions& options) {
@@ -103,34 +144,8 @@ std::vector<CurvatureCluster> FindCurvatureClusters(
     points.push_back(cloud[k]);
     weights.push_back(curvatures[k]);
   }
-  struct Mode {
-    Eigen::Vector2d position;
-    int num_points;
-    double sum_curvatures;
-  };
-  std::vector<Mode> modes;
-  const PointRaster raster(points, options.cluster_radius_meters);
-  // The sharpest points first: their modes are the ones that others join.
-  std::vector<size_t> order(points.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&weights](const size_t a, const size_t b) {
-                     return weights[a] > weights[b];
-                   });
-  for (const size_t k : order) {
-    const Eigen::Vector2d mode = FindMode(
-        raster, points, weights, options.cluster_radius_meters, points[k]);
-    const auto known =
-        std::find_if(modes.begin(), modes.end(), [&](const Mode& other) {
-          return (other.position - mode).norm() < options.cluster_radius_meters;
-        });
-    if (known == modes.end()) {
-      modes.push_back({mode, 1, weights[k]});
-    } else {
-      ++known->num_points;
-      known->sum_curvatures += weights[k];
-    }
-  }
+  std::vector<Mode> modes =
+      FindModes(points, weights, options.cluster_radius_meters);
   std::stable_sort(
       modes.begin(), modes.end(),
       [](const Mode& a, const Mode& b) { return a.num_points > b.num_points; });

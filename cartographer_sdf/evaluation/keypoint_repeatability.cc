@@ -11,7 +11,7 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr double kRadius = 0.2;                              // [m]
-constexpr double kMaxRotation = 20. * M_PI / 180.;           // [rad]
+constexpr double kMaxViewRotation = 20. * M_PI / 180.;       // [rad]
 const Eigen::Vector2d kElsewhere = Eigen::Vector2d(1., 0.);  // [m]
 
 bool IsObserved(const SurfaceModel& surface, const Eigen::Vector2d& p_submap) {
@@ -33,7 +33,7 @@ Found Find(const FeatureSet& features, const KeypointKind kind,
     if ((feature.keypoint.position - position).norm() > kRadius) continue;
     found.near = true;
     found.oriented |= std::abs(std::remainder(feature.orientation - orientation,
-                                              2. * M_PI)) < kMaxRotation;
+                                              2. * M_PI)) < kMaxViewRotation;
   }
   return found;
 }

@@ -10,7 +10,7 @@
 #include <array>
 
 #include "cartographer_sdf/geometry/rigid2.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 
 namespace cartographer_sdf {
 

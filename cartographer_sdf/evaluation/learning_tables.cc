@@ -28,10 +28,10 @@ std::string Header(const std::array<const char*, n>& term_names) {
 }
 
 template <size_t n>
-void AppendRow(const LoopClosure& closure, const double score,
+void AppendRow(const PairPose& pair, const double score,
                const std::array<double, n>& terms, std::string* const content) {
-  absl::StrAppendFormat(content, "%s,%.9g",
-                        Ids(closure.reference, closure.query), score);
+  absl::StrAppendFormat(content, "%s,%.9g", Ids(pair.reference, pair.query),
+                        score);
   for (const double term : terms) absl::StrAppendFormat(content, ",%.9g", term);
   *content += "\n";
 }
@@ -42,11 +42,8 @@ absl::Status WriteScoreTerms(const std::string& path,
                              const std::vector<Match>& matches) {
   std::string content = Header(ScoreTermNames());
   for (const Match& match : matches) {
-    if (!match.verification) continue;
-    const Verification& verification = *match.verification;
-    AppendRow(match.closure, verification.score,
-              ScoreTerms(verification.agreement, verification.margin),
-              &content);
+    AppendRow(match.pair, match.pair_score,
+              ScoreTerms(match.evidence, match.margin), &content);
   }
   return WriteWholeFile(path, content);
 }
@@ -56,14 +53,13 @@ absl::Status WriteNeighbourhoodTerms(const std::string& path,
                                      const std::vector<Match>& matches) {
   std::string content = Header(NeighbourhoodTermNames());
   for (const Match& match : matches) {
-    if (!match.verification || !match.neighbourhood ||
-        match.verification->score < options.min_pair_score) {
+    if (!match.neighbourhood || match.pair_score < options.min_pair_score) {
       continue;
     }
-    AppendRow(match.closure, match.closure.score,
-              NeighbourhoodTerms(options, match.verification->score,
-                                 *match.neighbourhood),
-              &content);
+    AppendRow(
+        match.pair, match.pair.score,
+        NeighbourhoodTerms(options, match.pair_score, *match.neighbourhood),
+        &content);
   }
   return WriteWholeFile(path, content);
 }

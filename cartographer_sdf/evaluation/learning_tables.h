@@ -19,12 +19,13 @@ namespace cartographer_sdf {
 
 // CSV with the columns reference_trajectory, reference_index, query_trajectory,
 // query_index, score, and one for each term of the score, called as its weight
-// (ScoreTermNames). Matches without a verification have no row. To nine digits.
+// (ScoreTermNames). Of matches of Method::kSdf. To nine digits.
 [[nodiscard]] absl::Status WriteScoreTerms(const std::string& path,
                                            const std::vector<Match>& matches);
 
 // The same of the score in the neighbourhood (NeighbourhoodTermNames). Matches
-// whose neighbours nobody asked, or whose own score is hopeless, have no row.
+// whose neighbourhood was not measured have no row, nor those whose own score
+// is below `min_pair_score`.
 [[nodiscard]] absl::Status WriteNeighbourhoodTerms(
     const std::string& path, const NeighbourhoodOptions& options,
     const std::vector<Match>& matches);

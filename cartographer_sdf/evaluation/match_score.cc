@@ -17,10 +17,10 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr double kCellSize = 0.2;                   // [m]
-constexpr double kRightTranslation = 0.5;           // [m]
-constexpr double kWrongTranslation = 1.;            // [m]
-constexpr double kMaxRotation = 10. * M_PI / 180.;  // [rad]
+constexpr double kCellSize = 0.2;                     // [m]
+constexpr double kRightTranslation = 0.5;             // [m]
+constexpr double kWrongTranslation = 1.;              // [m]
+constexpr double kRightRotation = 10. * M_PI / 180.;  // [rad]
 constexpr double kHighPrecision = 0.99;
 
 using Cell = std::pair<int64_t, int64_t>;
@@ -84,10 +84,12 @@ bool AreNeighbours(const SubmapId& a, const SubmapId& b,
 
 AnswerVerdict Judge(const double translation_error,
                     const double rotation_error) {
-  if (translation_error < kRightTranslation && rotation_error < kMaxRotation) {
+  if (translation_error < kRightTranslation &&
+      rotation_error < kRightRotation) {
     return AnswerVerdict::kRight;
   }
-  if (translation_error > kWrongTranslation || rotation_error > kMaxRotation) {
+  if (translation_error > kWrongTranslation ||
+      rotation_error > kRightRotation) {
     return AnswerVerdict::kWrong;
   }
   return AnswerVerdict::kNear;

@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/report/match_table.h"
 
 namespace cartographer_sdf {
 

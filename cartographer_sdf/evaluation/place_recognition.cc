@@ -12,18 +12,11 @@ namespace {
 
 using IdPair = std::pair<SubmapId, SubmapId>;
 
-}  // namespace
-
-PlaceRecognitionScore ScorePlaceRecognition(
-    const PairTruths& pairs, const std::vector<AnswerLabel>& labels,
-    const std::vector<MatchRow>& matches) {
-  PlaceRecognitionScore score;
-  std::set<SubmapId> queries, positive, matched, right;
-  for (const auto& [ids, truth] : pairs) {
-    queries.insert(ids.second);
-    if (truth.is_positive) positive.insert(ids.second);
-  }
-  // Labels name a pair of one map in the order of its ids, the table need not.
+// The accepted ones among the judged pairs. Labels name a pair of one map in
+// the order of its ids, the table need not.
+std::set<IdPair> AcceptedPairs(const std::vector<AnswerLabel>& labels,
+                               const std::vector<MatchRow>& matches,
+                               int* const num_unknown) {
   std::set<IdPair> judged;
   for (const AnswerLabel& label : labels) {
     judged.insert({label.reference, label.query});
@@ -38,9 +31,25 @@ PlaceRecognitionScore ScorePlaceRecognition(
     } else if (judged.count(turned) > 0) {
       accepted.insert(turned);
     } else {
-      ++score.num_unknown;
+      ++*num_unknown;
     }
   }
+  return accepted;
+}
+
+}  // namespace
+
+PlaceRecognitionScore ScorePlaceRecognition(
+    const PairTruths& pairs, const std::vector<AnswerLabel>& labels,
+    const std::vector<MatchRow>& matches) {
+  PlaceRecognitionScore score;
+  std::set<SubmapId> queries, positive, matched, right;
+  for (const auto& [ids, truth] : pairs) {
+    queries.insert(ids.second);
+    if (truth.is_positive) positive.insert(ids.second);
+  }
+  const std::set<IdPair> accepted =
+      AcceptedPairs(labels, matches, &score.num_unknown);
   for (const AnswerLabel& label : labels) {
     if (accepted.count({label.reference, label.query}) == 0) continue;
     score.num_right += label.verdict == AnswerVerdict::kRight;

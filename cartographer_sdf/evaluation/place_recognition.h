@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/match_table.h"
+#include "cartographer_sdf/report/match_table.h"
 
 namespace cartographer_sdf {
 

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <random>
-#include <set>
+#include <utility>
 
 #include "cartographer_sdf/grid/turned_grid.h"
 #include "glog/logging.h"
@@ -25,6 +27,55 @@ size_t Draw(std::mt19937_64* const engine, const size_t bound) {
 double DrawRotation(std::mt19937_64* const engine) {
   const double unit = std::ldexp(static_cast<double>((*engine)() >> 11), -53);
   return M_PI - 2. * M_PI * unit;
+}
+
+std::map<SubmapId, std::optional<Place>> DescribeReferences(
+    const PlaceMaker& make_place, const std::vector<TurnedPair>& pairs,
+    const Executor& executor) {
+  std::map<SubmapId, std::optional<Place>> places;
+  for (const TurnedPair& pair : pairs) places[pair.reference] = std::nullopt;
+  std::vector<std::pair<const SubmapId, std::optional<Place>>*> entries;
+  for (auto& entry : places) entries.push_back(&entry);
+  executor(entries.size(), [&](const size_t k) {
+    entries[k]->second = make_place(entries[k]->first, 0.);
+  });
+  return places;
+}
+
+std::optional<MatchRow> MatchPair(const MatchOptions& options,
+                                  const TurnedPair& pair,
+                                  const Place& reference, const Place& query) {
+  const std::optional<Match> result = MatchPlaces(options, reference, query);
+  if (!result) return std::nullopt;
+  MatchRow row = ToRow(*result, result->verdict == Verdict::kAccepted,
+                       VerdictName(result->verdict));
+  row.T_reference_query = row.T_reference_query * Rigid2(0., 0., pair.rotation);
+  return row;
+}
+
+// Matches with all features, and with those within each clearance.
+std::vector<std::optional<MatchRow>> MatchVariants(
+    const MatchOptions& options, const TurnedPair& pair,
+    const std::vector<double>& max_clearances, const Place& reference,
+    Place query) {
+  std::vector<std::optional<MatchRow>> rows = {
+      MatchPair(options, pair, reference, query)};
+  if (max_clearances.empty()) return rows;
+  Place near_reference;
+  Place near_query;
+  near_reference.id = reference.id;
+  near_query.id = query.id;
+  if (options.method != Method::kPaper) {
+    near_reference.surface = reference.surface;
+    near_query.surface = std::move(query.surface);
+  }
+  for (const double max_clearance : max_clearances) {
+    near_reference.features =
+        FeaturesNearWalls(reference.features, max_clearance);
+    near_query.features = FeaturesNearWalls(query.features, max_clearance);
+    rows.push_back(MatchPair(options, pair, near_reference, near_query));
+  }
+  return rows;
 }
 
 }  // namespace
@@ -114,68 +165,28 @@ std::vector<std::vector<MatchRow>> MatchTurnedPairs(
     const std::vector<TurnedPair>& pairs,
     const std::vector<double>& max_clearances, const Executor& executor,
     const ProgressCallback& on_progress) {
-  std::set<SubmapId> references;
-  for (const TurnedPair& pair : pairs) references.insert(pair.reference);
-  const std::vector<SubmapId> ids(references.begin(), references.end());
-  std::vector<std::optional<Place>> described(ids.size());
-  executor(ids.size(),
-           [&](const size_t k) { described[k] = make_place(ids[k], 0.); });
-  const size_t num_variants = 1 + max_clearances.size();
-  std::vector<std::vector<std::optional<MatchRow>>> found(
-      num_variants, std::vector<std::optional<MatchRow>>(pairs.size()));
+  const std::map<SubmapId, std::optional<Place>> references =
+      DescribeReferences(make_place, pairs, executor);
+  // By pairs, of which those without both places have no rows.
+  std::vector<std::vector<std::optional<MatchRow>>> found(pairs.size());
   std::mutex progress_mutex;
   size_t num_done = 0;
-  const auto match_pair = [&](const size_t k) {
-    const TurnedPair& pair = pairs[k];
-    const std::optional<Place>& reference =
-        described[std::lower_bound(ids.begin(), ids.end(), pair.reference) -
-                  ids.begin()];
-    std::optional<Place> query = make_place(pair.query, pair.rotation);
-    if (!reference || !query) return;
-    const Rigid2 T_turned_query(0., 0., pair.rotation);
-    const auto match = [&](const Place& a, const Place& b, const size_t v) {
-      const std::optional<Match> result = MatchPlaces(options, a, b);
-      if (!result) return;
-      MatchRow row;
-      row.reference = pair.reference;
-      row.query = pair.query;
-      row.accepted = result->verdict == Verdict::kAccepted;
-      row.score = result->closure.score;
-      row.T_reference_query =
-          result->closure.T_reference_query * T_turned_query;
-      row.verdict = VerdictName(result->verdict);
-      row.inliers = result->closure.evidence.inliers;
-      found[v][k] = row;
-    };
-    match(*reference, *query, 0);
-    if (max_clearances.empty()) return;
-    Place near_reference;
-    Place near_query;
-    near_reference.id = reference->id;
-    near_query.id = query->id;
-    if (options.method != Method::kPaper) {
-      near_reference.surface = reference->surface;
-      near_query.surface = std::move(query->surface);
-    }
-    for (size_t v = 1; v < num_variants; ++v) {
-      near_reference.features =
-          FeaturesNearWalls(reference->features, max_clearances[v - 1]);
-      near_query.features =
-          FeaturesNearWalls(query->features, max_clearances[v - 1]);
-      match(near_reference, near_query, v);
-    }
-  };
   executor(pairs.size(), [&](const size_t k) {
-    match_pair(k);
+    const std::optional<Place>& reference = references.at(pairs[k].reference);
+    std::optional<Place> query = make_place(pairs[k].query, pairs[k].rotation);
+    if (reference && query) {
+      found[k] = MatchVariants(options, pairs[k], max_clearances, *reference,
+                               *std::move(query));
+    }
     if (!on_progress) return;
     const std::lock_guard<std::mutex> lock(progress_mutex);
     on_progress(static_cast<double>(++num_done) /
                 static_cast<double>(pairs.size()));
   });
-  std::vector<std::vector<MatchRow>> rows(num_variants);
-  for (size_t v = 0; v < num_variants; ++v) {
-    for (std::optional<MatchRow>& row : found[v]) {
-      if (row) rows[v].push_back(*std::move(row));
+  std::vector<std::vector<MatchRow>> rows(1 + max_clearances.size());
+  for (std::vector<std::optional<MatchRow>>& variants : found) {
+    for (size_t v = 0; v < variants.size(); ++v) {
+      if (variants[v]) rows[v].push_back(*std::move(variants[v]));
     }
   }
   return rows;

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/evaluation/shape_context.h"
-#include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/report/match_table.h"
 
 namespace cartographer_sdf {
 

@@ -11,8 +11,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/evaluation/text_file.h"
 #include "cartographer_sdf/evaluation/tracking_pose.h"
+#include "cartographer_sdf/file/text_file.h"
 
 namespace cartographer_sdf {
 namespace {

@@ -139,6 +139,7 @@ absl::StatusOr<DescribedMap> DescribeMapByShapeContexts(
   });
   DescribedMap map;
   map.state = *std::move(state);
+  map.odometry = OdometryPoses(map.state);
   for (Place& place : places) {
     const SubmapId id = place.id;
     map.places.emplace(id, std::move(place));

@@ -22,7 +22,7 @@
 #include "cartographer_sdf/evaluation/curvature_clusters.h"
 #include "cartographer_sdf/evaluation/submap_cloud.h"
 #include "cartographer_sdf/feature/descriptor.h"
-#include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/place_store/described_map.h"
 
 namespace cartographer_sdf {
 

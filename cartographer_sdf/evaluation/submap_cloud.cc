@@ -14,7 +14,7 @@ namespace cartographer_sdf {
 namespace {
 
 // Beyond it, no raster can tell points apart [m].
-constexpr double kMaxCoordinate = 1e6;
+constexpr double kMaxPointCoordinate = 1e6;
 
 // The first and the last, and others evenly between.
 std::vector<NodeId> Thin(const std::set<NodeId>& nodes, const int max_size) {
@@ -46,7 +46,7 @@ SubmapCloud DownsampleCloud(const SubmapCloud& cloud, const double voxel_size) {
   };
   std::map<std::pair<int64_t, int64_t>, Sum> voxels;
   for (const Eigen::Vector2d& point : cloud) {
-    if (!(point.cwiseAbs().maxCoeff() < kMaxCoordinate)) continue;
+    if (!(point.cwiseAbs().maxCoeff() < kMaxPointCoordinate)) continue;
     Sum& sum =
         voxels[{static_cast<int64_t>(std::floor(point.x() / voxel_size)),
                 static_cast<int64_t>(std::floor(point.y() / voxel_size))}];

@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 
 namespace cartographer_sdf {
@@ -16,7 +16,7 @@ namespace {
 constexpr char kSubmap[] = "submap";
 constexpr char kNode[] = "node";
 // [m], as in maps: beyond, cells could not be counted.
-constexpr double kMaxCoordinate = 1e9;
+constexpr double kMaxTruthCoordinate = 1e9;
 
 template <typename Id>
 void AppendRows(const char* const kind, const std::map<Id, Rigid2>& poses,
@@ -45,7 +45,7 @@ absl::StatusOr<Truth> ReadTruth(const std::string& path) {
     const int trajectory = row.Integer(1);
     const int index = row.Integer(2);
     const Rigid2 pose(row.Number(3), row.Number(4), row.Number(5));
-    if (pose.translation().cwiseAbs().maxCoeff() > kMaxCoordinate) {
+    if (pose.translation().cwiseAbs().maxCoeff() > kMaxTruthCoordinate) {
       return LineError(path, row.line, "the position is beyond 1e9 m");
     }
     bool is_new = false;

@@ -4,35 +4,54 @@
 #include "cartographer_sdf/live/background_search.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 #include <utility>
 
+#include "cartographer_sdf/geometry/evenly_spaced.h"
 #include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/recognition/neighbourhood_verification.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// So many submaps of the map at most are held against the nodes of a trajectory
-// that was located.
-constexpr size_t kMaxLocationClosures = 3;
+// At most so many submaps of the map are held against the nodes of a trajectory
+// that was localised.
+constexpr size_t kMaxLocalizationClosures = 3;
 
-RetrievalOptions RecognizerOptions(const LiveOptions& options) {
-  RetrievalOptions retrieval = options.retrieval;
-  retrieval.max_num_candidates = std::max(
-      retrieval.max_num_candidates, options.localization.max_num_candidates);
-  retrieval.min_num_candidates =
-      std::min(retrieval.max_num_candidates,
-               std::max(retrieval.min_num_candidates,
-                        options.localization.max_num_candidates));
-  return retrieval;
+// The worker is one thread.
+void RunInOrder(const size_t n, const std::function<void(size_t)>& task) {
+  for (size_t k = 0; k < n; ++k) task(k);
+}
+
+// The host has cut beams without an echo to the length that it believes.
+ScanGridOptions GridOptions(const LiveLocalizationOptions& options) {
+  ScanGridOptions grid;
+  grid.resolution = options.resolution_meters;
+  grid.empty_beam_length = grid.max_range;
+  return grid;
+}
+
+bool IsSamePose(const LiveLocalizationOptions& options, const Rigid2& T_map_a,
+                const Rigid2& T_map_b) {
+  const Rigid2 T_a_b = T_map_a.Inverse() * T_map_b;
+  return T_a_b.translation().norm() <=
+             options.max_translation_difference_meters &&
+         std::abs(T_a_b.rotation()) <= options.max_rotation_difference;
+}
+
+// A map of the query alone.
+MapLayout LayoutOfQuery(const Place& place) {
+  PoseGraph graph;
+  graph.submap_poses[place.id] = Rigid2();
+  return MakeMapLayout(graph, {}, {{place.id, place}});
 }
 
 void AddNodes(const SubmapId& submap, const std::vector<SubmapNode>& nodes,
-              PoseGraph* const pose_graph, ScansByNode* const scans) {
+              std::map<SubmapId, InsertedNodes>* const inserted,
+              ScansByNode* const scans) {
   for (const SubmapNode& node : nodes) {
-    pose_graph->constraints.push_back({submap, node.id, node.T_submap_node, 0.,
-                                       0., Constraint::Tag::kIntraSubmap});
+    (*inserted)[submap].emplace(node.id, node.T_submap_node);
     std::vector<SurfacePoint> scan = NodeScan(*node.data);
     if (!scan.empty()) scans->emplace(node.id, std::move(scan));
   }
@@ -40,20 +59,22 @@ void AddNodes(const SubmapId& submap, const std::vector<SubmapNode>& nodes,
 
 }  // namespace
 
-std::vector<SubmapNode> ThinOut(const LiftingOptions& options,
+std::vector<SubmapNode> ThinOut(const ConstraintOptions& options,
                                 const std::vector<SubmapNode>& nodes) {
-  const size_t count =
-      std::min(nodes.size(), static_cast<size_t>(options.num_nodes_per_submap));
   std::vector<SubmapNode> kept;
-  for (size_t k = 0; k < count; ++k) {
-    kept.push_back(nodes[(2 * k + 1) * nodes.size() / (2 * count)]);
+  for (const size_t k : EvenlySpacedIndices(
+           nodes.size(), static_cast<size_t>(options.num_nodes_per_submap))) {
+    kept.push_back(nodes[k]);
   }
   return kept;
 }
 
+BackgroundSearch::LocalSearch::LocalSearch(
+    const LiveLocalizationOptions& options)
+    : grid(GridOptions(options), options.window_meters) {}
+
 BackgroundSearch::BackgroundSearch(const LiveOptions& options)
-    : options_(options),
-      recognizer_(RecognizerOptions(options), options.match) {}
+    : options_(options), recognizer_(options.retrieval, options.match) {}
 
 std::optional<Place> BackgroundSearch::Describe(
     const SubmapId& id, const OccupancyGrid& grid) const {
@@ -62,46 +83,43 @@ std::optional<Place> BackgroundSearch::Describe(
   return place;
 }
 
-BackgroundSearch::Found BackgroundSearch::Recognize(const Place& query) const {
-  std::vector<RetrievalCandidate> candidates =
-      recognizer_.Retrieve(query, [this, &query](const SubmapId& id) {
-        return id.trajectory == query.id.trajectory &&
-               std::abs(id.index - query.id.index) < options_.min_index_gap;
+PlaceRecognizer::Recognition BackgroundSearch::Recognize(
+    const SubmapId& query,
+    const std::map<SubmapId, OdometryPose>& odometry) const {
+  PlaceRecognizer::Recognition recognition = recognizer_.Recognize(
+      places().at(query), [this, &query](const SubmapId& id) {
+        return ShareScans(id, query, options_.min_index_gap);
       });
-  const size_t max_num_candidates =
-      static_cast<size_t>(options_.retrieval.max_num_candidates);
-  const size_t min_num_candidates =
-      static_cast<size_t>(options_.retrieval.min_num_candidates);
-  // The recognizer retrieves more, for localization.
-  while (candidates.size() > max_num_candidates ||
-         (candidates.size() > min_num_candidates &&
-          candidates.back().score < options_.retrieval.min_score)) {
-    candidates.pop_back();
+  if (options_.verify_neighbourhoods) {
+    const TrajectoryPlaces map{&places(), &odometry};
+    for (Match& match : recognition.matches) {
+      VerifyNeighbourhood(options_.neighbourhood, options_.match, map, map,
+                          options_.min_index_gap, &match);
+    }
   }
-  Found found;
-  found.num_candidates = candidates.size();
-  for (const RetrievalCandidate& candidate : candidates) {
-    std::optional<Match> match =
-        MatchPlaces(options_.match, places().at(candidate.id), query);
-    if (match) found.matches.push_back(*std::move(match));
-  }
-  return found;
+  return recognition;
 }
 
 void BackgroundSearch::Remember(Place place) {
   if (places().count(place.id) == 0) recognizer_.Remember(std::move(place));
 }
 
-std::vector<Constraint> BackgroundSearch::Lift(
-    const LoopClosure& closure, const std::vector<SubmapNode>& reference_nodes,
-    const std::vector<SubmapNode>& query_nodes) const {
-  PoseGraph pose_graph;
+void BackgroundSearch::GenerateConstraints(
+    const std::map<SubmapId, std::vector<SubmapNode>>& nodes,
+    std::vector<Closure>* const closures) const {
+  std::map<SubmapId, InsertedNodes> inserted;
   ScansByNode scans;
-  AddNodes(closure.reference, reference_nodes, &pose_graph, &scans);
-  AddNodes(closure.query, query_nodes, &pose_graph, &scans);
-  return LiftClosure(options_.lifting, pose_graph, closure,
-                     places().at(closure.reference).surface,
-                     places().at(closure.query).surface, scans);
+  for (const Closure& closure : *closures) {
+    if (closure.status != ClosureStatus::kSelected) continue;
+    for (const SubmapId& submap :
+         {closure.match.pair.reference, closure.match.pair.query}) {
+      const auto found = nodes.find(submap);
+      if (found == nodes.end() || inserted.count(submap) > 0) continue;
+      AddNodes(submap, found->second, &inserted, &scans);
+    }
+  }
+  cartographer_sdf::GenerateConstraints(options_.constraints, inserted,
+                                        places(), scans, &RunInOrder, closures);
 }
 
 void BackgroundSearch::StartLocalizing(const int trajectory_id) {
@@ -114,97 +132,111 @@ void BackgroundSearch::StopLocalizing(const int trajectory_id) {
 }
 
 void BackgroundSearch::AddScans(const int trajectory_id,
-                                std::vector<PlacedScan> scans) {
-  const auto search = local_searches_.find(trajectory_id);
-  if (search == local_searches_.end()) return;
-  for (PlacedScan& scan : scans) search->second.grid.Insert(std::move(scan));
+                                std::vector<NodeWithScan> nodes) {
+  const auto found = local_searches_.find(trajectory_id);
+  if (found == local_searches_.end()) return;
+  LocalSearch& search = found->second;
+  for (NodeWithScan& node : nodes) {
+    search.nodes.push_back(std::move(node.data));
+    search.grid.Insert(std::move(node.scan));
+  }
+  while (search.nodes.size() > search.grid.scans().size()) {
+    search.nodes.pop_front();
+  }
 }
 
-BackgroundSearch::Localization BackgroundSearch::Localize(
-    const int trajectory_id, const std::map<SubmapId, Rigid2>& T_map_submap) {
-  Localization result;
+BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
+                                                   const MapLayout& map) {
+  Query query;
+  query.localization.verdict = LocalizationVerdict::kTooLittleSeen;
   const auto found = local_searches_.find(trajectory_id);
-  if (found == local_searches_.end()) return result;
+  if (found == local_searches_.end()) return query;
   LocalSearch& search = found->second;
   const std::optional<OccupancyGrid> grid = search.grid.Copy();
-  if (!grid) return result;
-  result.T_local_query = search.grid.T_local_grid();
-  const std::optional<Place> query =
+  if (!grid) return query;
+  query.T_local_query = search.grid.T_local_submap();
+  const std::optional<Place> place =
       Describe({trajectory_id, kGrowingSubmapIndex}, *grid);
-  if (!query) return result;
-  result.has_seen_walls = true;
-
-  std::vector<Match> matches;
-  std::vector<PoseVote> votes;
-  for (const RetrievalCandidate& candidate :
-       recognizer_.Retrieve(*query, [&T_map_submap](const SubmapId& id) {
-         return T_map_submap.count(id) == 0;
-       })) {
-    ++result.num_candidates;
-    std::optional<Match> match =
-        MatchPlaces(options_.match, places().at(candidate.id), *query);
-    if (!match) continue;
-    votes.push_back(
-        {T_map_submap.at(candidate.id) * match->closure.T_reference_query,
-         match->closure.score, match->verdict == Verdict::kAccepted,
-         match->verdict == Verdict::kUnlikely && match->closure.score > 0.});
-    matches.push_back(*std::move(match));
+  if (!place) return query;
+  const std::map<SubmapId, Place> query_places = {{place->id, *place}};
+  const MapLayout query_layout = LayoutOfQuery(*place);
+  const LiveLocalizationOptions& options = options_.localization;
+  query.localization = cartographer_sdf::Localize(
+      options.localizer, options_.consistency, options_.match,
+      {&places(), &map}, {&query_places, &query_layout},
+      [&](const std::map<SubmapId, Place>& queries, const ProgressCallback&) {
+        PlaceRecognizer::Recognition recognition =
+            recognizer_.RecognizeAmongBest(
+                queries.begin()->second, options.max_num_candidates,
+                [&map](const SubmapId& id) {
+                  return map.T_map_submap.count(id) == 0;
+                });
+        query.num_candidates = recognition.num_candidates;
+        return std::move(recognition.matches);
+      },
+      &RunInOrder);
+  CountCertain(query.T_local_query, &search, &query);
+  if (query.num_certain >= options.min_num_queries) {
+    CloseWithMap(search, *place, &query);
   }
-  const LocalizationOptions& options = options_.localization;
-  result.location = FindLocation(options, votes);
-  if (result.location) {
-    result.reference =
-        matches[result.location->supporters.front()].closure.reference;
-  }
-  if (!result.location || result.location->score < options.min_score ||
-      result.location->score - result.location->runner_up_score <
-          options.min_lead) {
-    search.num_certain = 0;
-    search.T_map_local.reset();
-    return result;
-  }
-  const Rigid2 T_map_local =
-      result.location->T_map_query * result.T_local_query.Inverse();
-  const bool is_same =
-      search.T_map_local &&
-      IsSamePose(options, *search.T_map_local * result.T_local_query,
-                 result.location->T_map_query);
-  search.num_certain = is_same ? search.num_certain + 1 : 1;
-  search.T_map_local = T_map_local;
-  result.num_certain = search.num_certain;
-  if (result.num_certain >= options.min_num_queries) {
-    LiftLocation(search.grid, matches, *query, &result);
-  }
-  return result;
+  return query;
 }
 
-void BackgroundSearch::LiftLocation(const GrowingGrid& grid,
-                                    const std::vector<Match>& matches,
-                                    const Place& query,
-                                    Localization* const result) const {
+void BackgroundSearch::CountCertain(const Rigid2& T_local_query,
+                                    LocalSearch* const search,
+                                    Query* const query) const {
+  if (!query->localization.T_map_query) {
+    search->num_certain = 0;
+    search->T_map_local.reset();
+    return;
+  }
+  const Rigid2& T_map_query = *query->localization.T_map_query;
+  const bool is_same =
+      search->T_map_local &&
+      IsSamePose(options_.localization, *search->T_map_local * T_local_query,
+                 T_map_query);
+  search->num_certain = is_same ? search->num_certain + 1 : 1;
+  search->T_map_local = T_map_query * T_local_query.Inverse();
+  query->num_certain = search->num_certain;
+}
+
+void BackgroundSearch::CloseWithMap(const LocalSearch& search,
+                                    const Place& place,
+                                    Query* const query) const {
   std::vector<SubmapNode> nodes;
-  for (const PlacedScan& scan : grid.scans()) {
-    nodes.push_back(
-        {FromHost(scan.node),
-         result->T_local_query.Inverse() * LocalNodePose(*scan.data),
-         scan.data});
+  for (size_t k = 0; k < search.nodes.size(); ++k) {
+    const DrivenScan& scan = search.grid.scans()[k];
+    nodes.push_back({scan.node,
+                     query->T_local_query.Inverse() * scan.T_local_node,
+                     search.nodes[k]});
   }
-  nodes = ThinOut(options_.lifting, nodes);
-  for (const SubmapNode& node : nodes) {
-    result->gravity_alignments[node.id] = node.data->gravity_alignment;
-  }
-  PoseGraph pose_graph;
+  nodes = ThinOut(options_.constraints, nodes);
+  std::map<SubmapId, InsertedNodes> inserted;
   ScansByNode scans;
-  AddNodes(query.id, nodes, &pose_graph, &scans);
-  for (const size_t k : result->location->supporters) {
-    if (result->closures.size() == kMaxLocationClosures) break;
-    const LoopClosure& closure = matches[k].closure;
-    std::vector<Constraint> constraints = LiftClosure(
-        options_.lifting, pose_graph, closure,
-        places().at(closure.reference).surface, query.surface, scans);
-    if (constraints.empty()) continue;
-    result->closures.push_back(closure);
-    result->constraints.push_back(std::move(constraints));
+  AddNodes(place.id, nodes, &inserted, &scans);
+  for (const SubmapNode& node : nodes) {
+    query->gravity_alignments[node.id] = node.data->gravity_alignment;
+  }
+  const Localization& localization = query->localization;
+  std::vector<const Match*> votes;
+  for (const size_t vote : localization.placements.front().votes) {
+    votes.push_back(&localization.matches[vote]);
+  }
+  std::stable_sort(votes.begin(), votes.end(),
+                   [](const Match* const a, const Match* const b) {
+                     return a->pair.score > b->pair.score;
+                   });
+  for (const Match* const vote : votes) {
+    if (query->closures.size() == kMaxLocalizationClosures) break;
+    Closure closure;
+    closure.match = *vote;
+    closure.constraints = cartographer_sdf::GenerateConstraints(
+        options_.constraints, vote->pair, inserted,
+        places().at(vote->pair.reference).surface, place.surface, scans);
+    if (closure.constraints.size() >=
+        static_cast<size_t>(options_.constraints.min_num_constraints)) {
+      query->closures.push_back(std::move(closure));
+    }
   }
 }
 

@@ -1,22 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the worker does: it describes, remembers and recognises places, and
-// locates trajectories in the places of a map. Knows neither locks nor the
-// host's pose graph.
+// What the worker does: it describes, remembers and recognises places, gives
+// closures their constraints, and localises trajectories in the places of a
+// map. Knows neither locks nor the host's pose graph.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
 #define CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <vector>
 
-#include "cartographer_sdf/live/growing_grid.h"
+#include "cartographer/mapping/trajectory_node.h"
+#include "cartographer_sdf/closing/pipeline.h"
 #include "cartographer_sdf/live/live_options.h"
-#include "cartographer_sdf/live/location.h"
+#include "cartographer_sdf/localization/growing_grid.h"
+#include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/recognition/place_recognizer.h"
 
@@ -25,16 +27,25 @@ namespace cartographer_sdf {
 // The index of a growing submap of ours, that the host does not know.
 constexpr int kGrowingSubmapIndex = -1;
 
+using NodeData =
+    std::shared_ptr<const cartographer::mapping::TrajectoryNode::Data>;
+
 // A node of a submap whose scan will be held against other submaps.
 struct SubmapNode {
   NodeId id;
   Rigid2 T_submap_node;
-  std::shared_ptr<const cartographer::mapping::TrajectoryNode::Data> data;
+  NodeData data;
 };
 
-// Evenly spaced ones, as many as are lifted.
+// A scan for localising a trajectory, and the host's node that it belongs to.
+struct NodeWithScan {
+  NodeData data;
+  DrivenScan scan;
+};
+
+// Evenly spaced ones, as many as get constraints.
 [[nodiscard]] std::vector<SubmapNode> ThinOut(
-    const LiftingOptions& options, const std::vector<SubmapNode>& nodes);
+    const ConstraintOptions& options, const std::vector<SubmapNode>& nodes);
 
 // Thread-compatible.
 class BackgroundSearch {
@@ -44,60 +55,57 @@ class BackgroundSearch {
   // None where the grid shows no walls.
   [[nodiscard]] std::optional<Place> Describe(const SubmapId& id,
                                               const OccupancyGrid& grid) const;
-  struct Found {
-    std::vector<Match> matches;  // whatever their verdict
-    size_t num_candidates = 0;
-  };
-  // Among the places that are not nearly the same by their ids.
-  [[nodiscard]] Found Recognize(const Place& query) const;
+  // Matches of a remembered place, the query, with the others that share no
+  // scans with it. `odometry` has all of them.
+  [[nodiscard]] PlaceRecognizer::Recognition Recognize(
+      const SubmapId& query,
+      const std::map<SubmapId, OdometryPose>& odometry) const;
   void Remember(Place place);
   void Forget(const SubmapId& id) { recognizer_.Forget(id); }
   [[nodiscard]] const std::map<SubmapId, Place>& places() const {
     return recognizer_.places();
   }
 
-  // Constraints of the closure; those of nodes of the reference are left out
-  // where none are given. Both places are remembered.
-  [[nodiscard]] std::vector<Constraint> Lift(
-      const LoopClosure& closure,
-      const std::vector<SubmapNode>& reference_nodes,
-      const std::vector<SubmapNode>& query_nodes) const;
+  // Gives the selected closures their constraints (closing/pipeline.h); both
+  // places of each are remembered. Submaps without nodes get none of their own.
+  void GenerateConstraints(
+      const std::map<SubmapId, std::vector<SubmapNode>>& nodes,
+      std::vector<Closure>* closures) const;
 
-  // Locating a trajectory. Starts again from nothing:
+  // Localising a trajectory. Starts again from nothing:
   void StartLocalizing(int trajectory_id);
   void StopLocalizing(int trajectory_id);
-  void AddScans(int trajectory_id, std::vector<PlacedScan> scans);
-  struct Localization {
-    std::optional<Location> location;
-    // The submap that matches best there.
-    std::optional<SubmapId> reference;
+  void AddScans(int trajectory_id, std::vector<NodeWithScan> nodes);
+  struct Query {
+    Localization localization;  // of `T_local_query` as the query's map frame
     // The frame of the query in the trajectory's local frame.
     Rigid2 T_local_query;
-    // Queries in a row, this one included, that said the same and were certain.
+    // Queries in a row, this one included, that were localised at one place.
     int num_certain = 0;
-    bool has_seen_walls = false;
     size_t num_candidates = 0;
-    // Matches that agree on the location, best first, and what they are as
-    // constraints of the trajectory's nodes; as many as are needed.
-    std::vector<LoopClosure> closures;
-    std::vector<std::vector<Constraint>> constraints;
-    std::map<NodeId, Eigen::Quaterniond> gravity_alignments;  // of their nodes
+    // Once enough queries agree: the best matches of the answer as closures
+    // with constraints of the trajectory's nodes, and the nodes' gravity
+    // alignments.
+    std::vector<Closure> closures;
+    std::map<NodeId, Eigen::Quaterniond> gravity_alignments;
   };
-  // Among the given submaps, whose poses in the map are T_map_submap. The
-  // trajectory has scans.
-  [[nodiscard]] Localization Localize(
-      int trajectory_id, const std::map<SubmapId, Rigid2>& T_map_submap);
+  // In the submaps of the layout, those that are remembered. The trajectory has
+  // scans.
+  [[nodiscard]] Query Localize(int trajectory_id, const MapLayout& map);
 
  private:
   struct LocalSearch {
-    explicit LocalSearch(const LocalizationOptions& options)
-        : grid(options.resolution_meters, options.window_meters) {}
+    explicit LocalSearch(const LiveLocalizationOptions& options);
     GrowingGrid grid;
+    // One for each scan of the grid, in their order.
+    std::deque<NodeData> nodes;
     std::optional<Rigid2> T_map_local;  // by the latest certain query
     int num_certain = 0;
   };
-  void LiftLocation(const GrowingGrid& grid, const std::vector<Match>& matches,
-                    const Place& query, Localization* result) const;
+  void CountCertain(const Rigid2& T_local_query, LocalSearch* search,
+                    Query* query) const;
+  void CloseWithMap(const LocalSearch& search, const Place& place,
+                    Query* query) const;
 
   const LiveOptions options_;
   PlaceRecognizer recognizer_;

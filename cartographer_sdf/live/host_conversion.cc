@@ -54,6 +54,26 @@ std::vector<SurfacePoint> NodeScan(const mapping::TrajectoryNode::Data& node) {
   return points;
 }
 
+DrivenScan MakeDrivenScan(const mapping::NodeId& id,
+                          const mapping::TrajectoryNode::Data& node,
+                          const cartographer::sensor::RangeData& range_data,
+                          const double distance_driven) {
+  const Eigen::Vector2f origin = range_data.origin.head<2>();
+  const auto from_origin =
+      [&origin](const cartographer::sensor::PointCloud& cloud) {
+        std::vector<Eigen::Vector2f> points;
+        points.reserve(cloud.size());
+        for (const cartographer::sensor::RangefinderPoint& point : cloud) {
+          points.push_back(point.position.head<2>() - origin);
+        }
+        return points;
+      };
+  return DrivenScan{
+      FromHost(id), LocalNodePose(node), Rigid2(origin.cast<double>(), 0.),
+      Scan{from_origin(range_data.returns), from_origin(range_data.misses)},
+      distance_driven};
+}
+
 HostConstraint ToHost(const Constraint& constraint,
                       const Eigen::Quaterniond& gravity_alignment) {
   // (submap <- tracking frame of the node)
@@ -71,24 +91,35 @@ HostConstraint ToHost(const Constraint& constraint,
           : HostConstraint::INTRA_SUBMAP};
 }
 
-std::optional<OccupancyGrid> CopyGrid(const mapping::Grid2D& grid,
-                                      const Rigid2& T_local_submap) {
-  // Through the serialized form, whose conversion knows all kinds of grids.
-  proto::Grid2D copy;
-  if (!copy.ParseFromString(
-          grid.ComputeCroppedGrid()->ToProto().SerializeAsString())) {
-    return std::nullopt;
+PoseGraph ConstraintsFromHost(const std::vector<HostConstraint>& constraints) {
+  PoseGraph graph;
+  for (const HostConstraint& constraint : constraints) {
+    graph.constraints.push_back(
+        {FromHost(constraint.submap_id), FromHost(constraint.node_id),
+         FromHost(constraint.pose.zbar_ij), constraint.pose.translation_weight,
+         constraint.pose.rotation_weight,
+         constraint.tag == HostConstraint::INTER_SUBMAP
+             ? Constraint::Tag::kInterSubmap
+             : Constraint::Tag::kIntraSubmap});
   }
-  absl::StatusOr<OccupancyGrid> converted =
-      MakeOccupancyGrid(copy, T_local_submap);
-  if (!converted.ok()) return std::nullopt;
-  return *std::move(converted);
+  return graph;
 }
 
 std::optional<OccupancyGrid> CopyGrid(const mapping::Submap& submap) {
   const auto* const planar = dynamic_cast<const mapping::Submap2D*>(&submap);
   if (planar == nullptr || planar->grid() == nullptr) return std::nullopt;
-  return CopyGrid(*planar->grid(), FromHost(submap.local_pose()));
+  // Through the serialized form, whose conversion knows all kinds of grids.
+  proto::Grid2D copy;
+  if (!copy.ParseFromString(planar->grid()
+                                ->ComputeCroppedGrid()
+                                ->ToProto()
+                                .SerializeAsString())) {
+    return std::nullopt;
+  }
+  absl::StatusOr<OccupancyGrid> converted =
+      MakeOccupancyGrid(copy, FromHost(submap.local_pose()));
+  if (!converted.ok()) return std::nullopt;
+  return *std::move(converted);
 }
 
 }  // namespace cartographer_sdf

@@ -11,17 +11,18 @@
 #include <vector>
 
 #include "Eigen/Geometry"
-#include "cartographer/mapping/2d/grid_2d.h"
 #include "cartographer/mapping/id.h"
 #include "cartographer/mapping/pose_graph_interface.h"
 #include "cartographer/mapping/submaps.h"
 #include "cartographer/mapping/trajectory_node.h"
+#include "cartographer/sensor/range_data.h"
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/localization/growing_grid.h"
+#include "cartographer_sdf/place/surface_model.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
-#include "cartographer_sdf/verification/surface_model.h"
 
 namespace cartographer_sdf {
 
@@ -42,16 +43,27 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
 [[nodiscard]] std::vector<SurfacePoint> NodeScan(
     const cartographer::mapping::TrajectoryNode::Data& node);
 
+// `range_data` lies in the trajectory's local frame; its points may be at any
+// height.
+[[nodiscard]] DrivenScan MakeDrivenScan(
+    const cartographer::mapping::NodeId& id,
+    const cartographer::mapping::TrajectoryNode::Data& node,
+    const cartographer::sensor::RangeData& range_data, double distance_driven);
+
 // As AddSerializedConstraints takes it: the host wants the pose of the tracking
 // frame, and takes the gravity alignment off again.
 [[nodiscard]] HostConstraint ToHost(
     const Constraint& constraint, const Eigen::Quaterniond& gravity_alignment);
 
-// A copy, cropped to what is known. The grid must not change meanwhile. None
-// where there is no grid, or one that is broken.
-[[nodiscard]] std::optional<OccupancyGrid> CopyGrid(
-    const cartographer::mapping::Grid2D& grid, const Rigid2& T_local_submap);
-// None where the submap is not a planar one, too.
+// A pose graph of constraints alone, those of the host's. Their poses are of
+// the tracking frames, without z, roll and pitch: good for which submap holds
+// which node, not for optimisation.
+[[nodiscard]] PoseGraph ConstraintsFromHost(
+    const std::vector<HostConstraint>& constraints);
+
+// A copy of the submap's grid, cropped to what is known. The submap must not
+// change meanwhile. None where it is not a planar one, has no grid, or one that
+// is broken.
 [[nodiscard]] std::optional<OccupancyGrid> CopyGrid(
     const cartographer::mapping::Submap& submap);
 

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/live/live_metrics.h"
 
+#include <initializer_list>
 #include <map>
 #include <string>
 
@@ -29,8 +30,8 @@ struct Metrics {
   metrics::Histogram* describe_seconds = metrics::Histogram::Null();
   metrics::Histogram* query_seconds = metrics::Histogram::Null();
   std::map<Verdict, metrics::Counter*> matches;
-  std::map<ClosureFate, metrics::Counter*> closures;
-  std::map<LocalizationReason, metrics::Counter*> localizations;
+  std::map<ClosureStatus, metrics::Counter*> closures;
+  std::map<LocalizationVerdict, metrics::Counter*> localizations;
 };
 
 Metrics& TheMetrics() {
@@ -43,6 +44,87 @@ void Increment(const std::map<Key, metrics::Counter*>& counters,
                const Key key) {
   const auto counter = counters.find(key);
   if (counter != counters.end()) counter->second->Increment();
+}
+
+metrics::Counter* NewCounter(metrics::FamilyFactory* const family_factory,
+                             const std::string& name,
+                             const std::string& description) {
+  return family_factory->NewCounterFamily(name, description)->Add({});
+}
+
+// A counter for each of `keys`, in one family, told apart by a label.
+template <typename Key>
+std::map<Key, metrics::Counter*> AddCounters(
+    metrics::Family<metrics::Counter>* const family, const std::string& label,
+    const char* (*const name_of)(Key), const std::initializer_list<Key> keys) {
+  std::map<Key, metrics::Counter*> counters;
+  for (const Key key : keys) {
+    counters[key] = family->Add({{label, name_of(key)}});
+  }
+  return counters;
+}
+
+void RegisterTotals(metrics::FamilyFactory* const family_factory,
+                    Metrics* const all) {
+  all->places = family_factory
+                    ->NewGaugeFamily("cartographer_sdf_places",
+                                     "Submaps that can be recognised")
+                    ->Add({});
+  all->submaps = NewCounter(family_factory, "cartographer_sdf_submaps",
+                            "Submaps that were described");
+  all->queries = NewCounter(family_factory, "cartographer_sdf_queries",
+                            "Submaps and growing submaps that were searched "
+                            "for among the others");
+  all->candidates = NewCounter(family_factory, "cartographer_sdf_candidates",
+                               "Pairs that queries proposed");
+  all->constraints = NewCounter(family_factory, "cartographer_sdf_constraints",
+                                "Constraints that were injected");
+}
+
+void RegisterTimes(metrics::FamilyFactory* const family_factory,
+                   Metrics* const all) {
+  const auto boundaries =
+      metrics::Histogram::ScaledPowersOf(2., kMinSeconds, kMaxSeconds);
+  all->describe_seconds =
+      family_factory
+          ->NewHistogramFamily("cartographer_sdf_describe_seconds",
+                               "Time to describe a submap", boundaries)
+          ->Add({});
+  all->query_seconds =
+      family_factory
+          ->NewHistogramFamily("cartographer_sdf_query_seconds",
+                               "Time to search for one and to verify what is "
+                               "found",
+                               boundaries)
+          ->Add({});
+}
+
+void RegisterOutcomes(metrics::FamilyFactory* const family_factory,
+                      Metrics* const all) {
+  all->matches = AddCounters(
+      family_factory->NewCounterFamily("cartographer_sdf_matches",
+                                       "Poses that were verified, by verdict"),
+      "verdict", &VerdictName,
+      {Verdict::kAccepted, Verdict::kTooLittleOverlap, Verdict::kContradicted,
+       Verdict::kUnlikely, Verdict::kDegenerate, Verdict::kAmbiguous});
+  all->closures =
+      AddCounters(family_factory->NewCounterFamily(
+                      "cartographer_sdf_closures",
+                      "Accepted closures, by what became of them"),
+                  "status", &ClosureStatusName,
+                  {ClosureStatus::kUnsupported, ClosureStatus::kInconsistent,
+                   ClosureStatus::kScansDisagree, ClosureStatus::kReady,
+                   ClosureStatus::kInGraph, ClosureStatus::kDetectedOnly,
+                   ClosureStatus::kGone});
+  all->localizations = AddCounters(
+      family_factory->NewCounterFamily(
+          "cartographer_sdf_localizations",
+          "Queries for a trajectory in a map, by what they found"),
+      "verdict", &LocalizationVerdictName,
+      {LocalizationVerdict::kLocalized, LocalizationVerdict::kTooLittleSeen,
+       LocalizationVerdict::kNothingAlike, LocalizationVerdict::kUncertain,
+       LocalizationVerdict::kAmbiguous, LocalizationVerdict::kContradicted,
+       LocalizationVerdict::kNoMap, LocalizationVerdict::kFinished});
 }
 
 }  // namespace
@@ -66,82 +148,22 @@ void CountMatch(const Verdict verdict) {
   Increment(TheMetrics().matches, verdict);
 }
 
-void CountClosure(const ClosureFate fate) {
-  Increment(TheMetrics().closures, fate);
+void CountClosure(const ClosureStatus status) {
+  Increment(TheMetrics().closures, status);
 }
 
 void CountConstraints(const double num_constraints) {
   TheMetrics().constraints->Increment(num_constraints);
 }
 
-void CountLocalization(const LocalizationReason reason) {
-  Increment(TheMetrics().localizations, reason);
+void CountLocalization(const LocalizationVerdict verdict) {
+  Increment(TheMetrics().localizations, verdict);
 }
 
 void RegisterMetrics(metrics::FamilyFactory* const family_factory) {
-  Metrics& all = TheMetrics();
-  all.places = family_factory
-                   ->NewGaugeFamily("cartographer_sdf_places",
-                                    "Submaps that can be recognised")
-                   ->Add({});
-  all.submaps = family_factory
-                    ->NewCounterFamily("cartographer_sdf_submaps",
-                                       "Submaps that were described")
-                    ->Add({});
-  all.queries = family_factory
-                    ->NewCounterFamily("cartographer_sdf_queries",
-                                       "Submaps and growing submaps that were "
-                                       "searched for among the others")
-                    ->Add({});
-  all.candidates = family_factory
-                       ->NewCounterFamily("cartographer_sdf_candidates",
-                                          "Pairs that queries proposed")
-                       ->Add({});
-  all.constraints = family_factory
-                        ->NewCounterFamily("cartographer_sdf_constraints",
-                                           "Constraints that were injected")
-                        ->Add({});
-  const auto boundaries =
-      metrics::Histogram::ScaledPowersOf(2., kMinSeconds, kMaxSeconds);
-  all.describe_seconds =
-      family_factory
-          ->NewHistogramFamily("cartographer_sdf_describe_seconds",
-                               "Time to describe a submap", boundaries)
-          ->Add({});
-  all.query_seconds =
-      family_factory
-          ->NewHistogramFamily("cartographer_sdf_query_seconds",
-                               "Time to search for one and to verify what is "
-                               "found",
-                               boundaries)
-          ->Add({});
-  auto* const matches = family_factory->NewCounterFamily(
-      "cartographer_sdf_matches", "Poses that were verified, by verdict");
-  for (const Verdict verdict :
-       {Verdict::kAccepted, Verdict::kTooLittleOverlap, Verdict::kContradicted,
-        Verdict::kUnlikely, Verdict::kDegenerate, Verdict::kAmbiguous}) {
-    all.matches[verdict] = matches->Add({{"verdict", VerdictName(verdict)}});
-  }
-  auto* const closures = family_factory->NewCounterFamily(
-      "cartographer_sdf_closures", "Accepted closures, by what became of them");
-  for (const ClosureFate fate :
-       {ClosureFate::kPending, ClosureFate::kContradicted,
-        ClosureFate::kScansDisagree, ClosureFate::kReady,
-        ClosureFate::kInjected, ClosureFate::kDetectedOnly,
-        ClosureFate::kGone}) {
-    all.closures[fate] = closures->Add({{"fate", ClosureFateName(fate)}});
-  }
-  auto* const localizations = family_factory->NewCounterFamily(
-      "cartographer_sdf_localizations",
-      "Queries for a trajectory in a map, by what they found");
-  for (const LocalizationReason reason :
-       {LocalizationReason::kLocated, LocalizationReason::kNoMap,
-        LocalizationReason::kNotEnoughSeen, LocalizationReason::kNoMatch,
-        LocalizationReason::kAmbiguous, LocalizationReason::kUncertain,
-        LocalizationReason::kFinished}) {
-    all.localizations[reason] =
-        localizations->Add({{"reason", LocalizationReasonName(reason)}});
-  }
+  RegisterTotals(family_factory, &TheMetrics());
+  RegisterTimes(family_factory, &TheMetrics());
+  RegisterOutcomes(family_factory, &TheMetrics());
 }
 
 }  // namespace cartographer_sdf

@@ -17,9 +17,9 @@ void CountDescribedSubmap(double seconds);
 void CountQuery(double seconds, double num_candidates);
 void CountMatch(Verdict verdict);
 // Called whenever a closure meets its fate.
-void CountClosure(ClosureFate fate);
+void CountClosure(ClosureStatus status);
 void CountConstraints(double num_constraints);
-void CountLocalization(LocalizationReason reason);
+void CountLocalization(LocalizationVerdict verdict);
 
 }  // namespace cartographer_sdf
 

@@ -10,14 +10,13 @@
 namespace cartographer_sdf {
 
 template <typename Visitor>
-void VisitOptions(Visitor& visit, LocalizationOptions& options) {
+void VisitOptions(Visitor& visit, LiveLocalizationOptions& options) {
   visit("enabled", options.enabled);
   visit("query_interval_meters", options.query_interval_meters);
   visit("window_meters", options.window_meters);
   visit("resolution_meters", options.resolution_meters);
   visit("max_num_candidates", options.max_num_candidates);
-  visit("min_score", options.min_score);
-  visit("min_lead", options.min_lead);
+  visit("localizer", options.localizer);
   visit("min_num_queries", options.min_num_queries);
   visit("max_translation_difference_meters",
         options.max_translation_difference_meters);
@@ -34,8 +33,10 @@ void VisitOptions(Visitor& visit, LiveOptions& options) {
   visit("place", options.place);
   visit("match", options.match);
   visit("retrieval", options.retrieval);
+  visit("verify_neighbourhoods", options.verify_neighbourhoods);
+  visit("neighbourhood", options.neighbourhood);
   visit("consistency", options.consistency);
-  visit("lifting", options.lifting);
+  visit("constraints", options.constraints);
   visit("localization", options.localization);
 }
 
@@ -47,7 +48,7 @@ constexpr char kTableName[] = "SDF_LIVE";
 
 LiveOptions::LiveOptions() { retrieval.max_num_candidates = 15; }
 
-std::string Validate(const LocalizationOptions& options) {
+std::string Validate(const LiveLocalizationOptions& options) {
   if (!(options.query_interval_meters > 0.)) {
     return "query_interval_meters must be positive";
   }
@@ -58,14 +59,13 @@ std::string Validate(const LocalizationOptions& options) {
   if (options.max_num_candidates < 1) {
     return "max_num_candidates must be positive";
   }
-  if (!(options.min_lead >= 0.)) return "min_lead must not be negative";
   if (options.min_num_queries < 1) return "min_num_queries must be positive";
   if (!(options.max_translation_difference_meters > 0. &&
         options.max_rotation_difference > 0.)) {
     return "max_translation_difference_meters and max_rotation_difference must "
            "be positive";
   }
-  return "";
+  return Validate(options.localizer);
 }
 
 std::string Validate(const LiveOptions& options) {
@@ -75,8 +75,9 @@ std::string Validate(const LiveOptions& options) {
   }
   for (const std::string& error :
        {Validate(options.place), Validate(options.match),
-        Validate(options.retrieval), Validate(options.consistency),
-        Validate(options.lifting), Validate(options.localization)}) {
+        Validate(options.retrieval), Validate(options.neighbourhood),
+        Validate(options.consistency), Validate(options.constraints),
+        Validate(options.localization)}) {
     if (!error.empty()) return error;
   }
   return "";

@@ -12,18 +12,21 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cartographer_sdf/closure/consistency.h"
-#include "cartographer_sdf/pose_graph/lifting.h"
+#include "cartographer_sdf/closing/consistency.h"
+#include "cartographer_sdf/closing/constraint_generation.h"
+#include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/matching/place_index.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/recognition/place.h"
-#include "cartographer_sdf/retrieval/place_index.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
 
 namespace cartographer_sdf {
 
-// Where is a new trajectory in a loaded map? It is asked of what the robot has
-// seen lately, long before the first submap is finished.
-struct LocalizationOptions {
-  // Whether new trajectories are located by themselves once a map is loaded.
+// Localisation of a new trajectory in a loaded map: the localiser is queried
+// repeatedly with what the robot has seen lately, long before the first submap
+// is finished.
+struct LiveLocalizationOptions {
+  // Whether new trajectories are localised by themselves once a map is loaded.
   bool enabled = true;
   // The first query, and each that follows, after so much driving [m].
   double query_interval_meters = 0.5;
@@ -35,20 +38,14 @@ struct LocalizationOptions {
   // The best so many submaps of the map are matched with the query, which shows
   // less than a submap does. Larger: found sooner, more CPU time.
   int max_num_candidates = 50;
-  // Summed scores of the matches that agree on one pose, beyond which the
-  // trajectory counts as located; log-odds. One of them must be accepted; the
-  // others count where they are more likely right than wrong. Matches of
-  // overlapping submaps tell much the same, hence the high threshold.
-  double min_score = 7.;
-  // By how much they must exceed those of the best distinct pose.
-  double min_lead = 4.;
+  LocalizationOptions localizer;
   // So many queries in a row, each after more driving, must say the same.
   int min_num_queries = 2;
   // Poses nearer than this are the same pose [m], [rad].
   double max_translation_difference_meters = 0.5;
   double max_rotation_difference = 0.1;
 };
-[[nodiscard]] std::string Validate(const LocalizationOptions& options);
+[[nodiscard]] std::string Validate(const LiveLocalizationOptions& options);
 
 struct LiveOptions {
   // false: CreateMapBuilder returns the host as it is.
@@ -57,8 +54,8 @@ struct LiveOptions {
   bool inject_constraints = true;
   // One line for each closure.
   bool log_closures = true;
-  // Whether places of a loaded map are taken from MAP.pbstream.places, and
-  // left there.
+  // Whether places of a loaded map are taken from MAP.pbstream.places, and left
+  // there; `relocalize --places` shares the file.
   bool use_place_files = true;
   // Submaps of one trajectory are matched from this difference of their indices
   // on; nearer ones share scans.
@@ -66,9 +63,12 @@ struct LiveOptions {
   PlaceOptions place;
   MatchOptions match;
   RetrievalOptions retrieval;
+  // Whether matches are verified together with the neighbours of both submaps.
+  bool verify_neighbourhoods = false;
+  NeighbourhoodOptions neighbourhood;
   ConsistencyOptions consistency;
-  LiftingOptions lifting;
-  LocalizationOptions localization;
+  ConstraintOptions constraints;
+  LiveLocalizationOptions localization;
 
   LiveOptions();
 };

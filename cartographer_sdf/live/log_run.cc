@@ -143,7 +143,7 @@ class Run {
     // The host aborts on files that are not whole.
     const absl::StatusOr<MapState> state = ReadMap(*options_.map_path);
     if (!state.ok()) return state.status();
-    if (state->num_trajectories == 0) {
+    if (state->trajectories.empty()) {
       return absl::InvalidArgumentError(
           absl::StrCat(*options_.map_path, " holds no trajectory"));
     }

@@ -56,7 +56,7 @@ struct NodeMoment {
   double cpu_seconds = 0.;
 };
 
-// When the searcher located the trajectory; `result.reason` says why it did
+// When the searcher localised the trajectory; `result.reason` says why it did
 // not.
 struct LocalizationMoment {
   LocalizationResult result;

@@ -158,46 +158,6 @@ class SearchingMapBuilder : public LiveMapBuilder {
 
 }  // namespace
 
-const char* LocalizationReasonName(const LocalizationReason reason) {
-  switch (reason) {
-    case LocalizationReason::kLocated:
-      return "located";
-    case LocalizationReason::kNoMap:
-      return "no_map";
-    case LocalizationReason::kNotEnoughSeen:
-      return "not_enough_seen";
-    case LocalizationReason::kNoMatch:
-      return "no_match";
-    case LocalizationReason::kAmbiguous:
-      return "ambiguous";
-    case LocalizationReason::kUncertain:
-      return "uncertain";
-    case LocalizationReason::kFinished:
-      return "finished";
-  }
-  LOG(FATAL) << static_cast<int>(reason);
-}
-
-const char* ClosureFateName(const ClosureFate fate) {
-  switch (fate) {
-    case ClosureFate::kPending:
-      return "pending";
-    case ClosureFate::kContradicted:
-      return "contradicted";
-    case ClosureFate::kScansDisagree:
-      return "scans_disagree";
-    case ClosureFate::kReady:
-      return "ready";
-    case ClosureFate::kInjected:
-      return "injected";
-    case ClosureFate::kDetectedOnly:
-      return "detected_only";
-    case ClosureFate::kGone:
-      return "gone";
-  }
-  LOG(FATAL) << static_cast<int>(fate);
-}
-
 std::unique_ptr<mapping::MapBuilderInterface> CreateMapBuilder(
     std::unique_ptr<mapping::MapBuilderInterface> host,
     const LiveOptions& options, LocalizationCallback on_localization) {

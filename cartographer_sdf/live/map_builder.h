@@ -9,7 +9,7 @@
 //
 // Every finished submap is described and recognised among all others by a
 // worker thread; closures become constraints of the pose graph. Trajectories
-// that start after a map was loaded are located in it.
+// that start after a map was loaded are localised in it.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
 #define CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
@@ -26,40 +26,32 @@
 #include "cartographer/mapping/map_builder_interface.h"
 #include "cartographer/metrics/family_factory.h"
 #include "cartographer/transform/rigid_transform.h"
-#include "cartographer_sdf/closure/loop_closure.h"
+#include "cartographer_sdf/closing/closure.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/live/live_options.h"
+#include "cartographer_sdf/localization/localizer.h"
 
 namespace cartographer_sdf {
-
-enum class LocalizationReason {
-  kLocated,
-  kNoMap,          // nothing is loaded, or nothing with walls is left of it
-  kNotEnoughSeen,  // the robot has not driven far enough, or saw no walls
-  kNoMatch,        // nothing in the map looks like it
-  kAmbiguous,      // two poses in the map are nearly as good
-  kUncertain,      // one pose is best, but not certain enough yet
-  kFinished,       // the trajectory ended before it was located
-};
-// "located", "no_map", ...
-[[nodiscard]] const char* LocalizationReasonName(LocalizationReason reason);
 
 // What the latest query for a trajectory found.
 struct LocalizationResult {
   int trajectory_id = 0;
-  bool located = false;
-  LocalizationReason reason = LocalizationReason::kNotEnoughSeen;
+  // Whether the pose below is believed: enough queries in a row agreed.
+  bool localized = false;
+  // Of the latest query; kUncertain also while too few queries agree.
+  LocalizationVerdict verdict = LocalizationVerdict::kTooLittleSeen;
+  std::string reason;  // for people
   // Of the newest scan that took part.
   cartographer::common::Time time;
   // The best pose so far; none where nothing matches. Believe it only where
-  // `located`. Of the gravity-aligned node of the newest scan in the map ...
+  // `localized`. Of the gravity-aligned node of the newest scan in the map ...
   std::optional<Rigid2> T_map_node;
   // ... and of the trajectory's local frame, which stays valid while local SLAM
   // does not drift.
   std::optional<Rigid2> T_map_local;
-  // Summed scores of the matches that agree on the pose, and of those that
-  // agree on the best distinct one, 0 where there is none; log-odds.
+  // Of the best placement, and of the best one that it excludes, 0 where there
+  // is none; log-odds.
   double score = 0.;
   double runner_up_score = 0.;
   // The submap of the map that matches best.
@@ -70,25 +62,14 @@ struct LocalizationResult {
 };
 
 // Called on the worker thread without any lock: once when a search ends,
-// located or not. Must not destroy the builder.
+// localised or not. Must not destroy the builder.
 using LocalizationCallback = std::function<void(const LocalizationResult&)>;
 
-enum class ClosureFate {
-  kPending,        // waits for others that agree
-  kContradicted,   // by weightier closures
-  kScansDisagree,  // the scans of its nodes do not fit
-  kReady,          // to be injected with the next optimisation
-  kInjected,
-  kDetectedOnly,  // injection is switched off, or there is no pose graph to do
-                  // it
-  kGone,          // a submap of it was trimmed or deleted before
-};
-// "pending", ...
-[[nodiscard]] const char* ClosureFateName(ClosureFate fate);
-
 struct ClosureRecord {
-  LoopClosure closure;
-  ClosureFate fate = ClosureFate::kPending;
+  PairPose pair;
+  PairEvidence evidence;
+  int num_inliers = 0;
+  ClosureStatus status = ClosureStatus::kUnsupported;
   int num_constraints = 0;
 };
 

@@ -24,6 +24,13 @@ double SecondsSince(const std::chrono::steady_clock::time_point begin) {
       .count();
 }
 
+// Not in the graph, and nothing speaks against it getting there yet.
+bool IsWaiting(const ClosureStatus status) {
+  return status == ClosureStatus::kUnsupported ||
+         status == ClosureStatus::kInconsistent ||
+         status == ClosureStatus::kReady;
+}
+
 // The host calls it after each optimisation.
 class Hook : public mapping::PoseGraphTrimmer {
  public:
@@ -89,8 +96,8 @@ void Searcher::AddTrajectory(const int trajectory_id,
 
 void Searcher::BeginSearch(const int trajectory_id,
                            Trajectory* const trajectory) {
-  trajectory->was_located =
-      trajectory->localization && trajectory->localization->located;
+  trajectory->was_localized =
+      trajectory->localization && trajectory->localization->localized;
   trajectory->is_searched = true;
   trajectory->is_restarted = true;
   trajectory->scans.clear();
@@ -99,8 +106,8 @@ void Searcher::BeginSearch(const int trajectory_id,
       trajectory->distance_driven + options_.localization.query_interval_meters;
   LocalizationResult result;
   result.trajectory_id = trajectory_id;
-  result.reason = has_map_ ? LocalizationReason::kNotEnoughSeen
-                           : LocalizationReason::kNoMap;
+  result.verdict = has_map_ ? LocalizationVerdict::kTooLittleSeen
+                            : LocalizationVerdict::kNoMap;
   trajectory->localization = result;
 }
 
@@ -186,7 +193,7 @@ void Searcher::ScheduleDescription(const SubmapId& id) {
     record.odometry.distance_driven =
         record.sum_of_distances / static_cast<double>(record.nodes.size());
   }
-  record.nodes = ThinOut(options_.lifting, record.nodes);
+  record.nodes = ThinOut(options_.constraints, record.nodes);
   worker_.Schedule([this, id] { DescribeAndRecognize(id); });
 }
 
@@ -194,14 +201,16 @@ void Searcher::CollectScan(const int trajectory_id,
                            const cartographer::sensor::RangeData& range_data,
                            const InsertionResult& insertion,
                            Trajectory* const trajectory) {
-  trajectory->scans.push_back({insertion.node_id, insertion.constant_data,
-                               range_data, trajectory->distance_driven});
+  trajectory->scans.push_back(
+      {insertion.constant_data,
+       MakeDrivenScan(insertion.node_id, *insertion.constant_data, range_data,
+                      trajectory->distance_driven)});
   if (trajectory->is_query_scheduled ||
       trajectory->distance_driven < trajectory->next_query) {
     return;
   }
   trajectory->is_query_scheduled = true;
-  worker_.Schedule([this, trajectory_id] { QueryLocation(trajectory_id); });
+  worker_.Schedule([this, trajectory_id] { QueryLocalization(trajectory_id); });
 }
 
 void Searcher::FinishTrajectory(const int trajectory_id,
@@ -214,10 +223,8 @@ void Searcher::FinishTrajectory(const int trajectory_id,
   {
     const absl::MutexLock lock(&mutex_);
     const auto found = trajectories_.find(trajectory_id);
-    if (is_shut_down_ || found == trajectories_.end() ||
-        found->second.is_finished) {
-      return;
-    }
+    const bool is_known = found != trajectories_.end();
+    if (is_shut_down_ || !is_known || found->second.is_finished) return;
     Trajectory& trajectory = found->second;
     trajectory.is_finished = true;
     // From here on they don't change.
@@ -228,7 +235,7 @@ void Searcher::FinishTrajectory(const int trajectory_id,
     }
     trajectory.growing.clear();
     if (trajectory.is_searched && has_map_) {
-      trajectory.localization->reason = LocalizationReason::kFinished;
+      trajectory.localization->verdict = LocalizationVerdict::kFinished;
       ended = trajectory.localization;
       worker_.Schedule(
           [this, trajectory_id] { search_.StopLocalizing(trajectory_id); });
@@ -239,11 +246,10 @@ void Searcher::FinishTrajectory(const int trajectory_id,
     trajectory.is_searched = false;
     trajectory.scans.clear();
   }
-  if (ended) {
-    CountLocalization(ended->reason);
-    LOG(INFO) << "trajectory " << trajectory_id
-              << " ended before it was located in the map";
-  }
+  if (!ended) return;
+  CountLocalization(ended->verdict);
+  LOG(INFO) << "trajectory " << trajectory_id
+            << " ended before it was localised in the map";
 }
 
 void Searcher::ForgetTrajectory(const int trajectory_id) {
@@ -265,40 +271,41 @@ void Searcher::ForgetTrajectory(const int trajectory_id) {
 void Searcher::ForgetSubmap(const SubmapId& id) {
   gone_.insert(id);
   submaps_.erase(id);
-  for (Closure& closure : closures_) {
-    const LoopClosure& found = closure.record.closure;
-    const bool is_waiting = closure.record.fate == ClosureFate::kPending ||
-                            closure.record.fate == ClosureFate::kContradicted ||
-                            closure.record.fate == ClosureFate::kReady;
-    if (is_waiting && (found.reference == id || found.query == id)) {
-      SetFate(ClosureFate::kGone, &closure);
+  for (LiveClosure& closure : closures_) {
+    const PairPose& pair = closure.closure.match.pair;
+    if (IsWaiting(closure.closure.status) &&
+        (pair.reference == id || pair.query == id)) {
+      SetStatus(ClosureStatus::kGone, &closure);
     }
   }
   worker_.Schedule([this, id] {
     search_.Forget(id);
-    map_poses_.erase(id);
+    map_odometry_.erase(id);
+    if (map_layout_) map_layout_->T_map_submap.erase(id);
     SetNumPlaces(static_cast<double>(search_.places().size()));
     const absl::MutexLock lock(&mutex_);
     summary_.num_places = static_cast<int>(search_.places().size());
   });
 }
 
-void Searcher::SetFate(const ClosureFate fate, Closure* const closure) {
-  if (closure->record.fate == fate) return;
-  closure->record.fate = fate;
-  CountClosure(fate);
-  if (fate != ClosureFate::kReady) closure->constraints.clear();
+void Searcher::SetStatus(const ClosureStatus status,
+                         LiveClosure* const closure) {
+  if (closure->closure.status == status) return;
+  closure->closure.status = status;
+  CountClosure(status);
+  if (status != ClosureStatus::kReady) closure->constraints.clear();
 }
 
-void Searcher::LogClosure(const Closure& closure) const {
+void Searcher::LogClosure(const LiveClosure& closure) const {
   if (!options_.log_closures) return;
-  const LoopClosure& found = closure.record.closure;
-  LOG(INFO) << "closure of submap " << found.query << " with "
-            << found.reference << ": " << ClosureFateName(closure.record.fate)
-            << ", score " << found.score << ", " << found.evidence.inliers
-            << " inliers, overlap " << found.evidence.overlap << ", residual "
-            << found.evidence.residual << " m, "
-            << closure.record.num_constraints << " constraints";
+  const Match& match = closure.closure.match;
+  LOG(INFO) << "closure of submap " << match.pair.query << " with "
+            << match.pair.reference << ": "
+            << ClosureStatusName(closure.closure.status) << ", score "
+            << match.pair.score << ", " << match.inliers.size()
+            << " inliers, overlap " << match.evidence.overlap
+            << ", wall distance " << match.evidence.WallDistance() << " m, "
+            << closure.num_constraints << " constraints";
 }
 
 void Searcher::OnStateLoaded(const std::map<int, int>& trajectory_ids,
@@ -358,7 +365,7 @@ void Searcher::Localize(const int trajectory_id) {
   if (is_shut_down_ || found == trajectories_.end() || !found->second.is_live ||
       found->second.is_finished) {
     LOG(WARNING) << "trajectory " << trajectory_id
-                 << " is not active, and can't be located";
+                 << " is not active, and can't be localised";
     return;
   }
   BeginSearch(trajectory_id, &found->second);
@@ -384,7 +391,12 @@ LiveSummary Searcher::GetSummary() const {
 std::vector<ClosureRecord> Searcher::GetClosures() const {
   const absl::MutexLock lock(&mutex_);
   std::vector<ClosureRecord> records;
-  for (const Closure& closure : closures_) records.push_back(closure.record);
+  for (const LiveClosure& closure : closures_) {
+    const Match& match = closure.closure.match;
+    records.push_back({match.pair, match.evidence,
+                       static_cast<int>(match.inliers.size()),
+                       closure.closure.status, closure.num_constraints});
+  }
   return records;
 }
 

@@ -114,19 +114,29 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     std::vector<int> growing;                 // indices of its submaps
     std::optional<Eigen::Vector2d> position;  // local
     double distance_driven = 0.;
-    // Being located.
+    // Being localised.
     bool is_searched = false;
-    bool is_restarted = false;  // the worker has to start anew
-    bool was_located = false;   // before this search
+    bool is_restarted = false;   // the worker has to start anew
+    bool was_localized = false;  // before this search
     bool is_query_scheduled = false;
-    double search_begin = 0.;       // distance driven then
-    double next_query = 0.;         // distance driven
-    std::vector<PlacedScan> scans;  // not yet taken by the worker
+    double search_begin = 0.;         // distance driven then
+    double next_query = 0.;           // distance driven
+    std::vector<NodeWithScan> scans;  // not yet taken by the worker
     std::optional<LocalizationResult> localization;
   };
-  struct Closure {
-    ClosureRecord record;
+  // A closure in the books; its status is the closure's, its constraints are in
+  // the host's form while they wait.
+  struct LiveClosure {
+    Closure closure;
+    int num_constraints = 0;
     std::vector<HostConstraint> constraints;
+  };
+  // What the worker needs to decide on closures, copied under the lock.
+  struct ClosureSnapshot {
+    std::vector<size_t> indices;  // in closures_
+    std::vector<Closure> closures;
+    std::map<SubmapId, OdometryPose> odometry;
+    std::map<SubmapId, std::vector<SubmapNode>> nodes;
   };
   // Nodes of live trajectories, as a round shows them.
   struct NodeCounts {
@@ -153,9 +163,9 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   void BeginSearch(int trajectory_id, Trajectory* trajectory)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ForgetSubmap(const SubmapId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void SetFate(ClosureFate fate, Closure* closure)
+  void SetStatus(ClosureStatus status, LiveClosure* closure)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void LogClosure(const Closure& closure) const
+  void LogClosure(const LiveClosure& closure) const
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   [[nodiscard]] bool MayInject() const {
     return options_.inject_constraints && pose_graph_ != nullptr;
@@ -175,10 +185,38 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
 
   // Tasks of the worker.
   void DescribeAndRecognize(const SubmapId& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  void SelectAndLift(const SubmapId& newest) ABSL_LOCKS_EXCLUDED(mutex_);
+  std::optional<Place> DescribeSubmap(const SubmapId& id)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Whether there is a new closure.
+  bool AddClosures(const SubmapId& id,
+                   const PlaceRecognizer::Recognition& recognition)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void UpdateClosures(const SubmapId& newest) ABSL_LOCKS_EXCLUDED(mutex_);
+  ClosureSnapshot TakeClosureSnapshot() const ABSL_LOCKS_EXCLUDED(mutex_);
+  void ApplyDecisions(const SubmapId& newest, const ClosureSnapshot& before,
+                      const std::vector<Closure>& decided)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   void DescribeLoaded(const std::map<int, int>& trajectory_ids, bool is_frozen,
                       const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
-  void QueryLocation(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Describes what is not in `places`, which are by their ids in the file;
+  // whether there was any. None where the worker is to stop.
+  std::optional<bool> DescribeMissing(const std::map<int, int>& trajectory_ids,
+                                      std::map<SubmapId, Place>* places)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void RememberLoaded(const std::map<int, int>& trajectory_ids,
+                      std::map<SubmapId, Place> places)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  void QueryLocalization(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The scans that a query begins with; empty where none is due.
+  struct ScansOfQuery {
+    std::vector<NodeWithScan> scans;
+    bool is_restarted = false;
+    double distance_driven = 0.;  // since the search began [m]
+  };
+  ScansOfQuery TakeScans(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Keeps the result; whether the search goes on to its end.
+  bool RecordQuery(const BackgroundSearch::Query& query, double cpu_seconds,
+                   LocalizationResult* result) ABSL_LOCKS_EXCLUDED(mutex_);
   void RefreshMapPoses() ABSL_LOCKS_EXCLUDED(mutex_);
   [[nodiscard]] bool IsStopping() const ABSL_LOCKS_EXCLUDED(mutex_);
 
@@ -192,7 +230,7 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   InjectionGate gate_ ABSL_GUARDED_BY(mutex_);
   std::map<int, Trajectory> trajectories_ ABSL_GUARDED_BY(mutex_);
   std::map<SubmapId, SubmapRecord> submaps_ ABSL_GUARDED_BY(mutex_);
-  std::vector<Closure> closures_ ABSL_GUARDED_BY(mutex_);
+  std::vector<LiveClosure> closures_ ABSL_GUARDED_BY(mutex_);
   std::set<SubmapId> gone_ ABSL_GUARDED_BY(mutex_);
   LiveSummary summary_ ABSL_GUARDED_BY(mutex_);
   std::vector<float> callback_seconds_ ABSL_GUARDED_BY(mutex_);
@@ -203,8 +241,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
 
   // Of the worker's tasks alone.
   BackgroundSearch search_;
-  std::map<SubmapId, Rigid2> map_poses_;  // of loaded submaps, T_map_submap
-  bool map_moves_ = false;                // not all of it is frozen
+  // Of loaded submaps; those without walls are absent.
+  std::map<SubmapId, OdometryPose> map_odometry_;
+  std::optional<MapLayout> map_layout_;
+  bool map_moves_ = false;  // not all of it is frozen
 
   Worker worker_;  // last, so that it ends first
 };

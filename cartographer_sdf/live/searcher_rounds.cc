@@ -123,8 +123,8 @@ void Searcher::InjectReady(
     const std::function<bool(const SubmapId&)>& has_submap,
     const std::function<bool(const NodeId&)>& has_node) {
   std::vector<HostConstraint> constraints;
-  for (Closure& closure : closures_) {
-    if (closure.record.fate != ClosureFate::kReady) continue;
+  for (LiveClosure& closure : closures_) {
+    if (closure.closure.status != ClosureStatus::kReady) continue;
     size_t num_constraints = 0;
     bool is_gone = false;
     for (const HostConstraint& constraint : closure.constraints) {
@@ -137,11 +137,11 @@ void Searcher::InjectReady(
       ++num_constraints;
     }
     if (num_constraints > 0) {
-      closure.record.num_constraints = static_cast<int>(num_constraints);
-      SetFate(ClosureFate::kInjected, &closure);
+      closure.num_constraints = static_cast<int>(num_constraints);
+      SetStatus(ClosureStatus::kInGraph, &closure);
       ++summary_.num_injected;
     } else if (is_gone) {
-      SetFate(ClosureFate::kGone, &closure);
+      SetStatus(ClosureStatus::kGone, &closure);
     }
     // Else a submap is still on its way into the graph, or its nodes are gone
     // and it soon will be.
@@ -154,8 +154,8 @@ void Searcher::InjectReady(
 
 void Searcher::RunFinalOptimization() {
   worker_.WaitUntilIdle();
-  const auto is_ready = [](const Closure& closure) {
-    return closure.record.fate == ClosureFate::kReady;
+  const auto is_ready = [](const LiveClosure& closure) {
+    return closure.closure.status == ClosureStatus::kReady;
   };
   bool has_ready;
   int64_t num_announced;

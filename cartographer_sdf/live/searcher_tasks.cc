@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/live/live_metrics.h"
 #include "cartographer_sdf/live/searcher.h"
 #include "cartographer_sdf/place_store/place_file.h"
@@ -17,8 +18,6 @@ namespace {
 
 namespace mapping = cartographer::mapping;
 
-// Fewer scans that fit do not bear out a closure.
-constexpr size_t kMinNumConstraints = 3;
 // Of the latest so many closures, those that agree are looked for: time grows
 // with the square.
 constexpr size_t kMaxNumClosuresToAgree = 400;
@@ -46,14 +45,6 @@ std::vector<HostConstraint> ConstraintsToHost(
   return result;
 }
 
-// What places depend on.
-std::string PlaceOptionsText(const LiveOptions& options) {
-  LiveOptions relevant;
-  relevant.place = options.place;
-  relevant.match = options.match;
-  return FormatLiveOptions(relevant);
-}
-
 // By ids as in the map; empty where there are none that fit.
 std::map<SubmapId, Place> ReadPlacesOf(const PlaceFileKey& key,
                                        const std::string& places_path) {
@@ -67,14 +58,38 @@ std::map<SubmapId, Place> ReadPlacesOf(const PlaceFileKey& key,
   return {};
 }
 
+// What the query says of the trajectory.
+void FillIn(const BackgroundSearch::Query& query,
+            const mapping::TrajectoryNode::Data& newest,
+            const int min_num_queries, LocalizationResult* const result) {
+  const Localization& found = query.localization;
+  result->verdict = found.verdict;
+  result->reason = found.reason;
+  if (found.placements.empty()) return;
+  const Placement& best = found.placements.front();
+  result->T_map_local = best.T_map_query * query.T_local_query.Inverse();
+  result->T_map_node = *result->T_map_local * LocalNodePose(newest);
+  result->score = best.score;
+  result->runner_up_score = found.runner_up_score.value_or(0.);
+  result->reference = found.matches[best.votes.front()].pair.reference;
+  result->localized = !query.closures.empty();
+  if (found.verdict == LocalizationVerdict::kLocalized && !result->localized) {
+    result->verdict = LocalizationVerdict::kUncertain;
+    result->reason =
+        query.num_certain < min_num_queries
+            ? "one query is not enough"
+            : "the scans of too few nodes fit where the matches put them";
+  }
+}
+
 }  // namespace
 
-void Searcher::DescribeAndRecognize(const SubmapId& id) {
+std::optional<Place> Searcher::DescribeSubmap(const SubmapId& id) {
   HostSubmap submap;
   {
     const absl::MutexLock lock(&mutex_);
     const auto found = submaps_.find(id);
-    if (is_shut_down_ || found == submaps_.end()) return;
+    if (is_shut_down_ || found == submaps_.end()) return std::nullopt;
     submap = std::move(found->second.submap);
     found->second.submap.reset();
   }
@@ -84,117 +99,127 @@ void Searcher::DescribeAndRecognize(const SubmapId& id) {
   std::optional<Place> place;
   if (grid) place = search_.Describe(id, *grid);
   CountDescribedSubmap(SecondsSince(begin));
-  if (!place) {
+  if (!place)
     LOG(INFO) << "submap " << id << " shows no walls, and is left out";
-    const absl::MutexLock lock(&mutex_);
-    ++summary_.num_submaps;
-    return;
-  }
-  const auto query_begin = std::chrono::steady_clock::now();
-  const BackgroundSearch::Found found = search_.Recognize(*place);
-  CountQuery(SecondsSince(query_begin),
-             static_cast<double>(found.num_candidates));
-  search_.Remember(*std::move(place));
-  SetNumPlaces(static_cast<double>(search_.places().size()));
-  bool has_closures = false;
-  {
-    const absl::MutexLock lock(&mutex_);
-    ++summary_.num_submaps;
-    ++summary_.num_queries;
-    summary_.num_candidates += static_cast<int>(found.num_candidates);
-    summary_.num_places = static_cast<int>(search_.places().size());
-    for (const Match& match : found.matches) {
-      CountMatch(match.verdict);
-      ++summary_.num_matches[VerdictName(match.verdict)];
-      if (match.verdict != Verdict::kAccepted) continue;
-      // Forgotten meanwhile, or about to be.
-      if (submaps_.count(match.closure.reference) == 0 ||
-          submaps_.count(id) == 0) {
-        continue;
-      }
-      closures_.push_back({{match.closure, ClosureFate::kPending, 0}, {}});
-      has_closures = true;
-    }
-  }
-  if (has_closures) SelectAndLift(id);
+  const absl::MutexLock lock(&mutex_);
+  ++summary_.num_submaps;
+  return place;
 }
 
-void Searcher::SelectAndLift(const SubmapId& newest) {
-  std::vector<size_t> indices;
-  std::vector<LoopClosure> closures;
+void Searcher::DescribeAndRecognize(const SubmapId& id) {
+  std::optional<Place> place = DescribeSubmap(id);
+  if (!place) return;
+  search_.Remember(*std::move(place));
+  SetNumPlaces(static_cast<double>(search_.places().size()));
   std::map<SubmapId, OdometryPose> odometry;
   {
     const absl::MutexLock lock(&mutex_);
-    for (size_t k = closures_.size();
-         k-- > 0 && indices.size() < kMaxNumClosuresToAgree;) {
-      const ClosureRecord& record = closures_[k].record;
-      const LoopClosure& closure = record.closure;
-      const auto reference = submaps_.find(closure.reference);
-      const auto query = submaps_.find(closure.query);
-      if (record.fate == ClosureFate::kScansDisagree ||
-          reference == submaps_.end() || query == submaps_.end()) {
-        continue;
-      }
-      odometry[closure.reference] = reference->second.odometry;
-      odometry[closure.query] = query->second.odometry;
-      indices.push_back(k);
-      closures.push_back(closure);
+    for (const auto& [submap, record] : submaps_) {
+      odometry[submap] = record.odometry;
     }
   }
-  const std::vector<SelectionResult> selections =
-      SelectConsistent(options_.consistency, odometry, closures);
-  for (size_t k = closures.size(); k-- > 0;) {
-    std::vector<SubmapNode> reference_nodes, query_nodes;
-    {
-      const absl::MutexLock lock(&mutex_);
-      Closure& closure = closures_[indices[k]];
-      const ClosureFate fate = closure.record.fate;
-      const bool is_undecided = fate == ClosureFate::kPending ||
-                                fate == ClosureFate::kContradicted ||
-                                fate == ClosureFate::kReady;
-      const bool is_new = closure.record.closure.query == newest;
-      if (selections[k].selection != Selection::kSelected) {
-        if (is_undecided) {
-          SetFate(selections[k].selection == Selection::kContradicted
-                      ? ClosureFate::kContradicted
-                      : ClosureFate::kPending,
-                  &closure);
-          if (is_new) LogClosure(closure);
-        } else if (fate == ClosureFate::kInjected &&
-                   selections[k].selection == Selection::kContradicted) {
-          LOG(WARNING) << "the closure of submap " << closures[k].query
-                       << " with " << closures[k].reference
-                       << " is in the pose graph, but is now contradicted by "
-                          "others";
-        }
-        continue;
-      }
-      if (!is_undecided || fate == ClosureFate::kReady) continue;
-      const auto reference = submaps_.find(closures[k].reference);
-      const auto query = submaps_.find(closures[k].query);
-      if (reference == submaps_.end() || query == submaps_.end()) continue;
-      reference_nodes = reference->second.nodes;
-      query_nodes = query->second.nodes;
+  const auto begin = std::chrono::steady_clock::now();
+  const PlaceRecognizer::Recognition recognition =
+      search_.Recognize(id, odometry);
+  CountQuery(SecondsSince(begin),
+             static_cast<double>(recognition.num_candidates));
+  if (AddClosures(id, recognition)) UpdateClosures(id);
+}
+
+bool Searcher::AddClosures(const SubmapId& id,
+                           const PlaceRecognizer::Recognition& recognition) {
+  const absl::MutexLock lock(&mutex_);
+  ++summary_.num_queries;
+  summary_.num_candidates += static_cast<int>(recognition.num_candidates);
+  summary_.num_places = static_cast<int>(search_.places().size());
+  bool has_closures = false;
+  for (const Match& match : recognition.matches) {
+    CountMatch(match.verdict);
+    ++summary_.num_matches[VerdictName(match.verdict)];
+    // Forgotten meanwhile, or about to be.
+    if (match.verdict != Verdict::kAccepted ||
+        submaps_.count(match.pair.reference) == 0 || submaps_.count(id) == 0) {
+      continue;
     }
-    std::map<NodeId, Eigen::Quaterniond> gravity_alignments;
-    for (const auto* const nodes : {&reference_nodes, &query_nodes}) {
-      for (const SubmapNode& node : *nodes) {
-        gravity_alignments[node.id] = node.data->gravity_alignment;
-      }
+    LiveClosure closure;
+    closure.closure.match = match;
+    closure.closure.status = ClosureStatus::kUnsupported;
+    closures_.push_back(std::move(closure));
+    has_closures = true;
+  }
+  return has_closures;
+}
+
+Searcher::ClosureSnapshot Searcher::TakeClosureSnapshot() const {
+  ClosureSnapshot snapshot;
+  const absl::MutexLock lock(&mutex_);
+  for (size_t k = closures_.size();
+       k-- > 0 && snapshot.indices.size() < kMaxNumClosuresToAgree;) {
+    const Closure& closure = closures_[k].closure;
+    const auto reference = submaps_.find(closure.match.pair.reference);
+    const auto query = submaps_.find(closure.match.pair.query);
+    if (closure.status == ClosureStatus::kScansDisagree ||
+        reference == submaps_.end() || query == submaps_.end()) {
+      continue;
     }
-    const std::vector<Constraint> constraints =
-        search_.Lift(closures[k], reference_nodes, query_nodes);
-    const absl::MutexLock lock(&mutex_);
-    Closure& closure = closures_[indices[k]];
-    if (closure.record.fate == ClosureFate::kGone) continue;
-    if (constraints.size() < kMinNumConstraints) {
-      SetFate(ClosureFate::kScansDisagree, &closure);
-    } else if (!MayInject()) {
-      SetFate(ClosureFate::kDetectedOnly, &closure);
+    snapshot.indices.push_back(k);
+    snapshot.closures.push_back(closure);
+    for (const auto& submap : {reference, query}) {
+      snapshot.odometry[submap->first] = submap->second.odometry;
+      snapshot.nodes[submap->first] = submap->second.nodes;
+    }
+  }
+  return snapshot;
+}
+
+void Searcher::UpdateClosures(const SubmapId& newest) {
+  const ClosureSnapshot snapshot = TakeClosureSnapshot();
+  std::vector<Closure> decided = snapshot.closures;
+  for (const size_t k :
+       SelectClosures(options_.consistency, snapshot.odometry, {}, &decided)) {
+    LOG(WARNING) << "the closure of submap " << decided[k].match.pair.query
+                 << " with " << decided[k].match.pair.reference
+                 << " is in the pose graph, but others now contradict it";
+  }
+  for (size_t k = 0; k < decided.size(); ++k) {
+    // It has its constraints.
+    if (snapshot.closures[k].status == ClosureStatus::kReady &&
+        decided[k].status == ClosureStatus::kSelected) {
+      decided[k].status = ClosureStatus::kReady;
+    }
+  }
+  search_.GenerateConstraints(snapshot.nodes, &decided);
+  ApplyDecisions(newest, snapshot, decided);
+}
+
+void Searcher::ApplyDecisions(const SubmapId& newest,
+                              const ClosureSnapshot& before,
+                              const std::vector<Closure>& decided) {
+  std::map<NodeId, Eigen::Quaterniond> gravity_alignments;
+  for (const auto& [submap, nodes] : before.nodes) {
+    for (const SubmapNode& node : nodes) {
+      gravity_alignments[node.id] = node.data->gravity_alignment;
+    }
+  }
+  const absl::MutexLock lock(&mutex_);
+  for (size_t k = decided.size(); k-- > 0;) {
+    LiveClosure& closure = closures_[before.indices[k]];
+    // Unless something happened to it meanwhile.
+    if (closure.closure.status != before.closures[k].status) continue;
+    const bool is_new = decided[k].match.pair.query == newest;
+    if (decided[k].status == closure.closure.status && !is_new) continue;
+    if (decided[k].status == ClosureStatus::kInGraph &&
+        before.closures[k].status != ClosureStatus::kInGraph) {
+      closure.num_constraints = static_cast<int>(decided[k].constraints.size());
+      SetStatus(
+          MayInject() ? ClosureStatus::kReady : ClosureStatus::kDetectedOnly,
+          &closure);
+      if (MayInject()) {
+        closure.constraints =
+            ConstraintsToHost(decided[k].constraints, gravity_alignments);
+      }
     } else {
-      closure.constraints = ConstraintsToHost(constraints, gravity_alignments);
-      closure.record.num_constraints = static_cast<int>(constraints.size());
-      SetFate(ClosureFate::kReady, &closure);
+      SetStatus(decided[k].status, &closure);
     }
     LogClosure(closure);
   }
@@ -203,28 +228,40 @@ void Searcher::SelectAndLift(const SubmapId& newest) {
 void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
                               const bool is_frozen, const std::string& path) {
   std::map<SubmapId, Place> places;  // by ids in the file
-  PlaceFileKey key;
-  const bool has_key = options_.use_place_files && !path.empty();
-  if (has_key) {
-    absl::StatusOr<PlaceFileKey> made =
-        MakePlaceFileKey(path, PlaceOptionsText(options_));
+  std::optional<PlaceFileKey> key;
+  if (options_.use_place_files && !path.empty()) {
+    absl::StatusOr<PlaceFileKey> made = MakePlaceFileKey(
+        path, FormatPlaceOptions(options_.place, options_.match));
     if (made.ok()) {
       key = *std::move(made);
-      places = ReadPlacesOf(key, path + kPlaceFileSuffix);
+      places = ReadPlacesOf(*key, path + kPlaceFileSuffix);
     }
   }
-  const auto submaps = pose_graph_->GetAllSubmapData();
   if (!is_frozen) map_moves_ = true;
+  const std::optional<bool> has_new = DescribeMissing(trajectory_ids, &places);
+  if (!has_new) return;
+  if (key && *has_new) {
+    const absl::Status status =
+        WritePlaces(path + kPlaceFileSuffix, *key, places);
+    if (!status.ok()) LOG(WARNING) << status.message();
+  }
+  RememberLoaded(trajectory_ids, std::move(places));
+}
+
+std::optional<bool> Searcher::DescribeMissing(
+    const std::map<int, int>& trajectory_ids,
+    std::map<SubmapId, Place>* const places) {
+  const auto submaps = pose_graph_->GetAllSubmapData();
   bool has_new = false;
   for (const auto& [id_in_file, trajectory_id] : trajectory_ids) {
     double distance = 0.;
     std::optional<Eigen::Vector2d> position;
     for (const auto& submap : submaps.trajectory(trajectory_id)) {
-      if (IsStopping()) return;
+      if (IsStopping()) return std::nullopt;
       if (submap.data.submap == nullptr) continue;
       const SubmapId id = FromHost(submap.id);
       const SubmapId id_of_file{id_in_file, id.index};
-      if (places.count(id_of_file) == 0) {
+      if (places->count(id_of_file) == 0) {
         const std::optional<OccupancyGrid> grid = CopyGrid(*submap.data.submap);
         std::optional<Place> place;
         if (grid) place = search_.Describe(id_of_file, *grid);
@@ -232,7 +269,7 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
         ++summary_.num_submaps;
         if (!place) continue;
         has_new = true;
-        places.emplace(id_of_file, *std::move(place));
+        places->emplace(id_of_file, *std::move(place));
       }
       SubmapRecord record;
       record.is_scheduled = true;
@@ -244,25 +281,30 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
       record.odometry.distance_driven = kDriftOfMaps * distance;
       const absl::MutexLock lock(&mutex_);
       if (gone_.count(id) > 0) continue;
-      map_poses_[id] = record.odometry.T_local_submap;
+      map_odometry_[id] = record.odometry;
       submaps_[id] = std::move(record);
     }
   }
-  if (has_key && has_new) {
-    const absl::Status status =
-        WritePlaces(path + kPlaceFileSuffix, key, places);
-    if (!status.ok()) LOG(WARNING) << status.message();
-  }
+  return has_new;
+}
+
+void Searcher::RememberLoaded(const std::map<int, int>& trajectory_ids,
+                              std::map<SubmapId, Place> places) {
   size_t num_places = 0;
   for (auto& [id_of_file, place] : places) {
     const auto trajectory_id = trajectory_ids.find(id_of_file.trajectory);
     if (trajectory_id == trajectory_ids.end()) continue;
     const SubmapId id{trajectory_id->second, id_of_file.index};
-    if (map_poses_.count(id) == 0) continue;
+    if (map_odometry_.count(id) == 0) continue;
     place.id = id;
     search_.Remember(std::move(place));
     ++num_places;
   }
+  PoseGraph graph = ConstraintsFromHost(pose_graph_->constraints());
+  for (const auto& [id, pose] : map_odometry_) {
+    graph.submap_poses[id] = pose.T_local_submap;
+  }
+  map_layout_ = MakeMapLayout(graph, map_odometry_, search_.places());
   SetNumPlaces(static_cast<double>(search_.places().size()));
   const absl::MutexLock lock(&mutex_);
   summary_.num_places = static_cast<int>(search_.places().size());
@@ -270,115 +312,96 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
 }
 
 void Searcher::RefreshMapPoses() {
-  if (!map_moves_) return;
+  if (!map_moves_ || !map_layout_) return;
   const auto poses = pose_graph_->GetAllSubmapPoses();
-  for (auto& [id, T_map_submap] : map_poses_) {
+  for (auto& [id, T_map_submap] : map_layout_->T_map_submap) {
     const auto pose = poses.find(ToHost(id));
     if (pose != poses.end()) T_map_submap = FromHost((*pose).data.pose);
   }
 }
 
-void Searcher::QueryLocation(const int trajectory_id) {
-  std::vector<PlacedScan> scans;
-  bool is_restarted = false;
-  double distance_driven = 0.;
-  {
-    const absl::MutexLock lock(&mutex_);
-    Trajectory& trajectory = trajectories_.at(trajectory_id);
-    trajectory.is_query_scheduled = false;
-    if (is_shut_down_ || !trajectory.is_searched || trajectory.scans.empty()) {
-      return;
-    }
-    scans = std::move(trajectory.scans);
-    trajectory.scans.clear();
-    is_restarted = trajectory.is_restarted;
-    trajectory.is_restarted = false;
-    distance_driven = trajectory.distance_driven - trajectory.search_begin;
-  }
+Searcher::ScansOfQuery Searcher::TakeScans(const int trajectory_id) {
+  ScansOfQuery result;
+  const absl::MutexLock lock(&mutex_);
+  Trajectory& trajectory = trajectories_.at(trajectory_id);
+  trajectory.is_query_scheduled = false;
+  if (is_shut_down_ || !trajectory.is_searched) return result;
+  result.scans = std::move(trajectory.scans);
+  trajectory.scans.clear();
+  if (result.scans.empty()) return result;
+  result.is_restarted = trajectory.is_restarted;
+  trajectory.is_restarted = false;
+  result.distance_driven = trajectory.distance_driven - trajectory.search_begin;
+  return result;
+}
+
+void Searcher::QueryLocalization(const int trajectory_id) {
+  ScansOfQuery taken = TakeScans(trajectory_id);
+  if (taken.scans.empty()) return;
   const double cpu_begin = ThreadCpuSeconds();
   const auto begin = std::chrono::steady_clock::now();
-  if (is_restarted) search_.StartLocalizing(trajectory_id);
-  const auto newest = scans.back().data;
-  search_.AddScans(trajectory_id, std::move(scans));
+  if (taken.is_restarted) search_.StartLocalizing(trajectory_id);
+  const NodeData newest = taken.scans.back().data;
+  search_.AddScans(trajectory_id, std::move(taken.scans));
   RefreshMapPoses();
-  BackgroundSearch::Localization outcome =
-      search_.Localize(trajectory_id, map_poses_);
-
   LocalizationResult result;
   result.trajectory_id = trajectory_id;
   result.time = newest->time;
-  result.distance_driven = distance_driven;
-  bool is_certain = false;
-  for (const auto& constraints : outcome.constraints) {
-    is_certain = is_certain || constraints.size() >= kMinNumConstraints;
-  }
-  if (outcome.location) {
-    result.T_map_local =
-        outcome.location->T_map_query * outcome.T_local_query.Inverse();
-    result.T_map_node = *result.T_map_local * LocalNodePose(*newest);
-    result.score = outcome.location->score;
-    result.runner_up_score = outcome.location->runner_up_score;
-    result.reference = outcome.reference;
-  }
-  const LocalizationOptions& options = options_.localization;
-  if (map_poses_.empty()) {
-    result.reason = LocalizationReason::kNoMap;
-  } else if (!outcome.has_seen_walls) {
-    result.reason = LocalizationReason::kNotEnoughSeen;
-  } else if (!outcome.location) {
-    result.reason = LocalizationReason::kNoMatch;
-  } else if (result.score - result.runner_up_score < options.min_lead) {
-    result.reason = LocalizationReason::kAmbiguous;
-  } else if (!is_certain) {
-    result.reason = LocalizationReason::kUncertain;
+  result.distance_driven = taken.distance_driven;
+  BackgroundSearch::Query query;
+  if (map_odometry_.empty() || !map_layout_) {
+    result.verdict = LocalizationVerdict::kNoMap;
   } else {
-    result.reason = LocalizationReason::kLocated;
-    result.located = true;
+    query = search_.Localize(trajectory_id, *map_layout_);
+    FillIn(query, *newest, options_.localization.min_num_queries, &result);
   }
-  CountQuery(SecondsSince(begin), static_cast<double>(outcome.num_candidates));
-  CountLocalization(result.reason);
-
-  {
-    const absl::MutexLock lock(&mutex_);
-    ++summary_.num_queries;
-    summary_.num_candidates += static_cast<int>(outcome.num_candidates);
-    Trajectory& trajectory = trajectories_.at(trajectory_id);
-    // Ended, or asked anew meanwhile.
-    if (!trajectory.is_searched || trajectory.is_restarted) return;
-    result.num_queries = trajectory.localization->num_queries + 1;
-    result.cpu_seconds =
-        trajectory.localization->cpu_seconds + ThreadCpuSeconds() - cpu_begin;
-    trajectory.localization = result;
-    trajectory.next_query =
-        trajectory.distance_driven + std::max(options.query_interval_meters,
-                                              kQueryBackoff * distance_driven);
-    if (!result.located) return;
-    trajectory.is_searched = false;
-    trajectory.scans.clear();
-    // Once it has been in the map, constraints of before the kidnapping would
-    // pull against those of after it.
-    const bool may_inject = MayInject() && !trajectory.was_located;
-    for (size_t k = 0; k < outcome.closures.size(); ++k) {
-      Closure closure{{outcome.closures[k], ClosureFate::kPending, 0}, {}};
-      closure.record.num_constraints =
-          static_cast<int>(outcome.constraints[k].size());
-      if (may_inject) {
-        closure.constraints = ConstraintsToHost(outcome.constraints[k],
-                                                outcome.gravity_alignments);
-      }
-      SetFate(may_inject ? ClosureFate::kReady : ClosureFate::kDetectedOnly,
-              &closure);
-      LogClosure(closure);
-      closures_.push_back(std::move(closure));
-    }
-  }
+  CountQuery(SecondsSince(begin), static_cast<double>(query.num_candidates));
+  CountLocalization(result.verdict);
+  if (!RecordQuery(query, ThreadCpuSeconds() - cpu_begin, &result)) return;
   search_.StopLocalizing(trajectory_id);
-  LOG(INFO) << "trajectory " << trajectory_id << " is located in the map at "
+  LOG(INFO) << "trajectory " << trajectory_id << " is localised in the map at "
             << *result.T_map_node << " after " << result.distance_driven
             << " m and " << result.num_queries << " queries, score "
             << result.score << ", the next best pose "
             << result.runner_up_score;
   if (on_localization_) on_localization_(result);
+}
+
+bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
+                           const double cpu_seconds,
+                           LocalizationResult* const result) {
+  const absl::MutexLock lock(&mutex_);
+  ++summary_.num_queries;
+  summary_.num_candidates += static_cast<int>(query.num_candidates);
+  Trajectory& trajectory = trajectories_.at(result->trajectory_id);
+  // Ended, or asked anew meanwhile.
+  if (!trajectory.is_searched || trajectory.is_restarted) return false;
+  result->num_queries = trajectory.localization->num_queries + 1;
+  result->cpu_seconds = trajectory.localization->cpu_seconds + cpu_seconds;
+  trajectory.localization = *result;
+  trajectory.next_query = trajectory.distance_driven +
+                          std::max(options_.localization.query_interval_meters,
+                                   kQueryBackoff * result->distance_driven);
+  if (!result->localized) return false;
+  trajectory.is_searched = false;
+  trajectory.scans.clear();
+  // Once it has been in the map, constraints of before the kidnapping would
+  // pull against those of after it.
+  const bool may_inject = MayInject() && !trajectory.was_localized;
+  for (const Closure& found : query.closures) {
+    LiveClosure closure;
+    closure.closure.match = found.match;
+    closure.num_constraints = static_cast<int>(found.constraints.size());
+    SetStatus(may_inject ? ClosureStatus::kReady : ClosureStatus::kDetectedOnly,
+              &closure);
+    if (may_inject) {
+      closure.constraints =
+          ConstraintsToHost(found.constraints, query.gravity_alignments);
+    }
+    LogClosure(closure);
+    closures_.push_back(std::move(closure));
+  }
+  return true;
 }
 
 }  // namespace cartographer_sdf

@@ -62,6 +62,44 @@ bool IsAmbiguous(const CorrespondenceOptions& options,
          std::sqrt(best->first) > options.max_ratio * std::sqrt(rival->first);
 }
 
+// The nearest references of each query feature, among those given by index.
+void Correspond(const CorrespondenceOptions& options,
+                const FeatureSet& reference, const FeatureSet& query,
+                const std::vector<int>& rows, const std::vector<int>& columns,
+                std::vector<Correspondence>* const correspondences) {
+  const Eigen::MatrixXf references = Select(reference.descriptors, rows);
+  const Eigen::MatrixXf queries = Select(query.descriptors, columns);
+  const Eigen::VectorXf squared_norms = references.colwise().squaredNorm();
+  // |r - q|^2 without |q|^2, which is added to those that matter.
+  const Eigen::MatrixXf products = references.transpose() * queries;
+  std::vector<Neighbour> neighbours;
+  for (Eigen::Index k = 0; k < products.cols(); ++k) {
+    const double clearance = query.features[columns[k]].keypoint.clearance;
+    const float squared_norm = queries.col(k).squaredNorm();
+    neighbours.clear();
+    for (Eigen::Index r = 0; r < products.rows(); ++r) {
+      if (std::abs(reference.features[rows[r]].keypoint.clearance - clearance) >
+          options.max_clearance_difference_meters) {
+        continue;
+      }
+      neighbours.emplace_back(
+          std::max(0.f, squared_norms[r] - 2.f * products(r, k) + squared_norm),
+          rows[r]);
+    }
+    if (options.use_ratio_test && IsAmbiguous(options, reference, neighbours)) {
+      continue;
+    }
+    const size_t proposed = std::min(
+        neighbours.size(), static_cast<size_t>(options.num_neighbours));
+    std::partial_sort(neighbours.begin(), neighbours.begin() + proposed,
+                      neighbours.end());
+    for (size_t n = 0; n < proposed; ++n) {
+      correspondences->push_back(
+          {neighbours[n].second, columns[k], std::sqrt(neighbours[n].first)});
+    }
+  }
+}
+
 }  // namespace
 
 std::string Validate(const CorrespondenceOptions& options) {
@@ -87,43 +125,11 @@ std::vector<Correspondence> FindCorrespondences(
   const auto reference_indices = IndicesByKind(options, reference);
   const auto query_indices = IndicesByKind(options, query);
   for (int kind = 0; kind < kNumKeypointKinds; ++kind) {
-    const std::vector<int>& rows = reference_indices[kind];
-    if (rows.empty() || query_indices[kind].empty()) continue;
-    const Eigen::MatrixXf references = Select(reference.descriptors, rows);
-    const Eigen::MatrixXf queries =
-        Select(query.descriptors, query_indices[kind]);
-    const Eigen::VectorXf squared_norms = references.colwise().squaredNorm();
-    // |r - q|^2 without |q|^2, which is added to those that matter.
-    const Eigen::MatrixXf products = references.transpose() * queries;
-    std::vector<Neighbour> neighbours;
-    for (Eigen::Index k = 0; k < products.cols(); ++k) {
-      const int query_index = query_indices[kind][k];
-      const double clearance = query.features[query_index].keypoint.clearance;
-      const float squared_norm = queries.col(k).squaredNorm();
-      neighbours.clear();
-      for (Eigen::Index r = 0; r < products.rows(); ++r) {
-        if (std::abs(reference.features[rows[r]].keypoint.clearance -
-                     clearance) > options.max_clearance_difference_meters) {
-          continue;
-        }
-        neighbours.emplace_back(
-            std::max(0.f,
-                     squared_norms[r] - 2.f * products(r, k) + squared_norm),
-            rows[r]);
-      }
-      if (options.use_ratio_test &&
-          IsAmbiguous(options, reference, neighbours)) {
-        continue;
-      }
-      const size_t proposed = std::min(
-          neighbours.size(), static_cast<size_t>(options.num_neighbours));
-      std::partial_sort(neighbours.begin(), neighbours.begin() + proposed,
-                        neighbours.end());
-      for (size_t n = 0; n < proposed; ++n) {
-        correspondences.push_back({neighbours[n].second, query_index,
-                                   std::sqrt(neighbours[n].first)});
-      }
+    if (reference_indices[kind].empty() || query_indices[kind].empty()) {
+      continue;
     }
+    Correspond(options, reference, query, reference_indices[kind],
+               query_indices[kind], &correspondences);
   }
   return correspondences;
 }

@@ -167,6 +167,35 @@ absl::Status FillImpliedProbabilities(const proto::Grid2D& stored,
   return absl::OkStatus();
 }
 
+// The inverse of MakeGeometry.
+proto::MapLimits MakeLimits(const CellGeometry& geometry,
+                            const Rigid2& T_local_submap) {
+  const Rigid2 T_local_grid = T_local_submap * geometry.T_submap_grid;
+  constexpr double kMaxAngle = 1e-9;  // [rad], of rounding
+  CHECK_LE(std::abs(T_local_grid.rotation()), kMaxAngle);
+  const Eigen::Vector2d max_local =
+      T_local_grid.translation() +
+      geometry.resolution * geometry.size.matrix().cast<double>();
+  proto::MapLimits limits;
+  limits.set_resolution(geometry.resolution);
+  limits.mutable_max()->set_x(max_local.x());
+  limits.mutable_max()->set_y(max_local.y());
+  limits.mutable_cell_limits()->set_num_x_cells(geometry.size.y());
+  limits.mutable_cell_limits()->set_num_y_cells(geometry.size.x());
+  return limits;
+}
+
+// The host's box of the cells from `min` to `max`.
+proto::CellBox MakeBox(const Eigen::Array2i& size, const Eigen::Array2i& min,
+                       const Eigen::Array2i& max) {
+  proto::CellBox box;
+  box.set_min_x(size.y() - 1 - max.y());
+  box.set_min_y(size.x() - 1 - max.x());
+  box.set_max_x(size.y() - 1 - min.y());
+  box.set_max_y(size.x() - 1 - min.x());
+  return box;
+}
+
 }  // namespace
 
 absl::StatusOr<OccupancyGrid> MakeOccupancyGrid(const proto::Grid2D& grid,
@@ -198,20 +227,8 @@ proto::Grid2D MakeGrid2D(const OccupancyGrid& grid,
   CHECK(grid.known.rows() == size.x() && grid.known.cols() == size.y() &&
         grid.probability.rows() == size.x() &&
         grid.probability.cols() == size.y());
-  const Rigid2 T_local_grid = T_local_submap * grid.geometry.T_submap_grid;
-  constexpr double kMaxAngle = 1e-9;  // [rad], of rounding
-  CHECK_LE(std::abs(T_local_grid.rotation()), kMaxAngle);
-  const Eigen::Vector2d max_local =
-      T_local_grid.translation() +
-      grid.geometry.resolution * size.matrix().cast<double>();
-
   proto::Grid2D result;
-  result.mutable_limits()->set_resolution(grid.geometry.resolution);
-  result.mutable_limits()->mutable_max()->set_x(max_local.x());
-  result.mutable_limits()->mutable_max()->set_y(max_local.y());
-  proto::CellLimits& limits = *result.mutable_limits()->mutable_cell_limits();
-  limits.set_num_x_cells(size.y());
-  limits.set_num_y_cells(size.x());
+  *result.mutable_limits() = MakeLimits(grid.geometry, T_local_submap);
   result.mutable_probability_grid_2d();
   result.set_min_correspondence_cost(kMinCost);
   result.set_max_correspondence_cost(kMaxCost);
@@ -229,11 +246,7 @@ proto::Grid2D MakeGrid2D(const OccupancyGrid& grid,
     }
   }
   if ((max_known >= 0).all()) {
-    proto::CellBox& box = *result.mutable_known_cells_box();
-    box.set_min_x(size.y() - 1 - max_known.y());
-    box.set_min_y(size.x() - 1 - max_known.x());
-    box.set_max_x(size.y() - 1 - min_known.y());
-    box.set_max_y(size.x() - 1 - min_known.x());
+    *result.mutable_known_cells_box() = MakeBox(size, min_known, max_known);
   }
   return result;
 }

@@ -6,16 +6,19 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/pbstream/assumed_attitudes.h"
+#include "cartographer_sdf/pbstream/map_reader.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
+#include "cartographer_sdf/pbstream/pose_graph_codec.h"
 #include "cartographer_sdf/pbstream/pose_graph_update.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/pbstream/state_reader.h"
-#include "cartographer_sdf/pbstream/stored_map.h"
 #include "cartographer_sdf/pbstream/trajectory_record.h"
 #include "glog/logging.h"
 
@@ -29,14 +32,6 @@ constexpr Kind kOrder[] = {Kind::kSubmap,         Kind::kNode,
                            Kind::kTrajectoryData, Kind::kImuData,
                            Kind::kOdometryData,   Kind::kFixedFramePoseData,
                            Kind::kLandmarkData};
-
-SubmapId Renumbered(const MapPart& part, const SubmapId& id) {
-  return {part.trajectories.at(id.trajectory), id.index};
-}
-
-NodeId Renumbered(const MapPart& part, const NodeId& id) {
-  return {part.trajectories.at(id.trajectory), id.index};
-}
 
 void Renumber(const MapPart& part, proto::Id* const id) {
   id->set_trajectory_id(part.trajectories.at(id->trajectory_id()));
@@ -84,32 +79,37 @@ void AppendStored(const MapPart& part, proto::PoseGraph stored,
   joined->MergeFrom(stored);
 }
 
-// Reads a part record by record, one ahead.
+// Reads a part record by record, one ahead. The records are checked as
+// ReadMap() does.
 class PartReader {
  public:
   [[nodiscard]] static absl::StatusOr<PartReader> Open(
       const MapPart& part, const ProgressCallback& on_progress) {
-    absl::StatusOr<StateReader> reader =
-        StateReader::Open(part.path, on_progress);
+    absl::StatusOr<MapReader> reader =
+        MapReader::Open(part.path, {}, on_progress);
     if (!reader.ok()) return reader.status();
     PartReader result(part, *std::move(reader));
-    // The pose graph, the options, and the first of what follows: a file that
-    // ReadMap has read has the former.
-    for (int i = 0; i < 3; ++i) {
-      if (absl::Status status = result.Advance(); !status.ok()) return status;
-      if (i == 1) {
-        result.options_ =
-            result.reader_.data().all_trajectory_builder_options();
-      }
+    absl::Status status = result.Advance();
+    if (status.ok()) {
+      result.pose_graph_ = result.data().pose_graph();
+      status = result.CheckTrajectories();
     }
+    if (status.ok()) status = result.Advance();
+    if (status.ok()) {
+      result.options_ = result.data().all_trajectory_builder_options();
+      status = result.Advance();
+    }
+    if (!status.ok()) return status;
     return result;
   }
 
   [[nodiscard]] bool is_at_end() const { return is_at_end_; }
   [[nodiscard]] const proto::SerializedData& data() const {
-    return reader_.data();
+    return reader_.record().data();
   }
-  [[nodiscard]] int format_version() const { return reader_.format_version(); }
+  [[nodiscard]] int format_version() const {
+    return reader_.record().format_version();
+  }
   [[nodiscard]] absl::Status Advance() {
     const absl::StatusOr<bool> has_record = reader_.Next();
     if (!has_record.ok()) return has_record.status();
@@ -117,9 +117,13 @@ class PartReader {
     return absl::OkStatus();
   }
 
+  // Adds the part's pose graph, which is then gone, under new numbers.
+  void MovePoseGraph(proto::PoseGraph* const joined) {
+    AppendStored(*part_, std::move(pose_graph_), joined);
+  }
+
   // The options under new numbers.
-  [[nodiscard]] absl::StatusOr<proto::AllTrajectoryBuilderOptions> Options()
-      const {
+  [[nodiscard]] proto::AllTrajectoryBuilderOptions Options() const {
     proto::AllTrajectoryBuilderOptions options = options_;
     for (proto::TrajectoryBuilderOptionsWithSensorIds& entry :
          *options.mutable_options_with_sensor_ids()) {
@@ -142,27 +146,51 @@ class PartReader {
     return options;
   }
 
-  // The current record under its new number.
-  [[nodiscard]] absl::StatusOr<std::string> Record(
-      const std::map<int, Rigid3>& T_joined_map) const {
+  // Adds the attitudes of nodes that have come so far under their new numbers.
+  void AppendAttitudes(Attitudes* const attitudes) const {
+    for (const auto& [id, attitude] : reader_.attitudes()) {
+      attitudes->emplace(Renumbered(*part_, id), attitude);
+    }
+  }
+
+  // Writes the current record under its new number.
+  [[nodiscard]] absl::Status WriteRecord(
+      const std::map<int, Rigid3>& T_joined_map,
+      RecordWriter* const writer) const {
+    const StateReader& record = reader_.record();
     const std::optional<int> trajectory = TrajectoryOfRecord(data());
-    if (!trajectory) return reader_.record();
+    if (!trajectory) return writer->WriteCompressed(record.compressed());
     const auto number = part_->trajectories.find(*trajectory);
     if (number == part_->trajectories.end()) {
-      return reader_.Corrupted(
-          absl::StrCat("is of trajectory ", *trajectory,
-                       ", which is not in the pose graph"));
+      return record.Corrupted(absl::StrCat("is of trajectory ", *trajectory,
+                                           ", which is not in the pose graph"));
     }
     if (data().trajectory_data().has_fixed_frame_origin_in_map()) {
-      return MovedTrajectoryData(number->second, T_joined_map);
+      const absl::StatusOr<std::string> moved =
+          MovedTrajectoryData(number->second, T_joined_map);
+      return moved.ok() ? writer->Write(*moved) : moved.status();
     }
-    if (number->first == number->second) return reader_.record();
-    return WithTrajectory(reader_.record(), data(), number->second);
+    if (number->first == number->second) {
+      return writer->WriteCompressed(record.compressed());
+    }
+    return writer->Write(
+        WithTrajectory(record.record(), data(), number->second));
   }
 
  private:
-  PartReader(const MapPart& part, StateReader reader)
+  PartReader(const MapPart& part, MapReader reader)
       : part_(&part), reader_(std::move(reader)) {}
+
+  [[nodiscard]] absl::Status CheckTrajectories() const {
+    for (const proto::Trajectory& trajectory : pose_graph_.trajectory()) {
+      if (part_->trajectories.count(trajectory.trajectory_id()) == 0) {
+        return absl::FailedPreconditionError(
+            absl::StrCat(part_->path, " has changed: it has got trajectory ",
+                         trajectory.trajectory_id()));
+      }
+    }
+    return absl::OkStatus();
+  }
 
   [[nodiscard]] absl::StatusOr<std::string> MovedTrajectoryData(
       const int number, const std::map<int, Rigid3>& T_joined_map) const {
@@ -174,8 +202,8 @@ class PartReader {
           *moved.mutable_trajectory_data()->mutable_fixed_frame_origin_in_map();
       const absl::StatusOr<Rigid3> before = FromProto(origin);
       if (!before.ok()) {
-        return reader_.Corrupted(absl::StrCat("has an origin of GPS that ",
-                                              before.status().message()));
+        return reader_.record().Corrupted(absl::StrCat(
+            "has an origin of GPS that ", before.status().message()));
       }
       origin = ToProto(T->second * *before);
     }
@@ -183,7 +211,8 @@ class PartReader {
   }
 
   const MapPart* part_;
-  StateReader reader_;
+  MapReader reader_;
+  proto::PoseGraph pose_graph_;
   proto::AllTrajectoryBuilderOptions options_;
   bool is_at_end_ = false;
 };
@@ -202,36 +231,6 @@ std::map<int, Rigid3> FirstNodesMoved(const PoseGraph& before,
   return moved;
 }
 
-// Reads the pose graphs of all parts and makes one of them.
-struct JoinedGraph {
-  PoseGraph before;
-  proto::SerializedData record;
-};
-
-absl::StatusOr<JoinedGraph> ReadJoinedGraph(
-    const std::vector<MapPart>& parts, const ProgressCallback& on_progress) {
-  JoinedGraph joined;
-  for (size_t k = 0; k < parts.size(); ++k) {
-    absl::StatusOr<StoredMap> map = ReadStoredMap(parts[k].path, {}, {});
-    if (!map.ok()) return map.status();
-    for (const int trajectory : map->state.trajectories) {
-      if (parts[k].trajectories.count(trajectory) == 0) {
-        return absl::FailedPreconditionError(absl::StrCat(
-            parts[k].path, " has changed: it has got trajectory ", trajectory));
-      }
-    }
-    AppendPoseGraph(parts[k], map->state.pose_graph, &joined.before);
-    AppendStored(parts[k],
-                 std::move(*map->pose_graph_record.mutable_pose_graph()),
-                 joined.record.mutable_pose_graph());
-    if (on_progress) {
-      on_progress(0.5 * static_cast<double>(k + 1) /
-                  static_cast<double>(parts.size()));
-    }
-  }
-  return joined;
-}
-
 absl::Status WriteMessage(const google::protobuf::MessageLite& message,
                           const std::string& output, const char* const name,
                           RecordWriter* const writer) {
@@ -241,6 +240,125 @@ absl::Status WriteMessage(const google::protobuf::MessageLite& message,
         "cannot write ", output, ": its ", name, " is larger than 2 GiB"));
   }
   return writer->Write(record);
+}
+
+// All parts, ready to be read on behind the options.
+absl::StatusOr<std::vector<PartReader>> OpenParts(
+    const std::vector<MapPart>& parts,
+    const std::vector<ProgressCallback>& on_progress) {
+  std::vector<PartReader> readers;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    absl::StatusOr<PartReader> reader =
+        PartReader::Open(parts[k], on_progress[k]);
+    if (!reader.ok()) return reader.status();
+    readers.push_back(*std::move(reader));
+  }
+  return readers;
+}
+
+// The progress of each part, of which the mean is that of the whole.
+class MeanProgress {
+ public:
+  MeanProgress(const size_t num_parts, const ProgressCallback& on_progress)
+      : fractions_(num_parts, 0.) {
+    for (size_t k = 0; k < num_parts; ++k) {
+      callbacks_.emplace_back();
+      if (!on_progress) continue;
+      callbacks_.back() = [this, k, &on_progress](const double fraction) {
+        fractions_[k] = fraction;
+        on_progress(std::accumulate(fractions_.begin(), fractions_.end(), 0.) /
+                    static_cast<double>(fractions_.size()));
+      };
+    }
+  }
+  MeanProgress(const MeanProgress&) = delete;
+  MeanProgress& operator=(const MeanProgress&) = delete;
+
+  [[nodiscard]] const std::vector<ProgressCallback>& callbacks() const {
+    return callbacks_;
+  }
+
+ private:
+  std::vector<double> fractions_;
+  std::vector<ProgressCallback> callbacks_;
+};
+
+// Writes header, pose graph and options; returns how the parts were moved.
+absl::StatusOr<std::map<int, Rigid3>> WriteBeginning(
+    const PoseGraph& pose_graph, const Attitudes& attitudes,
+    const std::string& output, std::vector<PartReader>* const parts,
+    RecordWriter* const writer) {
+  proto::SerializationHeader header;
+  proto::SerializedData graph_record, options_record;
+  for (PartReader& part : *parts) {
+    header.set_format_version(std::max(
+        header.format_version(), static_cast<uint32_t>(part.format_version())));
+    part.MovePoseGraph(graph_record.mutable_pose_graph());
+    options_record.mutable_all_trajectory_builder_options()->MergeFrom(
+        part.Options());
+  }
+  const PoseGraph before = ToPoseGraph(graph_record.pose_graph(), attitudes);
+  const absl::StatusOr<bool> changed =
+      UpdatePoseGraph(before, pose_graph, graph_record.mutable_pose_graph());
+  if (!changed.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("cannot write ", output,
+                                                   ": the joined map ",
+                                                   changed.status().message()));
+  }
+  absl::Status status = WriteMessage(header, output, "header", writer);
+  if (status.ok()) {
+    status = WriteMessage(graph_record, output, "pose graph", writer);
+  }
+  if (status.ok()) {
+    status = WriteMessage(options_record, output, "list of options", writer);
+  }
+  if (!status.ok()) return status;
+  return FirstNodesMoved(before, pose_graph);
+}
+
+// Each file is read once: all go on while they have records of the kind whose
+// turn it is. What comes too late in a file is written where it comes.
+absl::Status WriteRecords(const std::map<int, Rigid3>& T_joined_map,
+                          std::vector<PartReader>* const parts,
+                          RecordWriter* const writer) {
+  for (size_t turn = 0; turn <= std::size(kOrder); ++turn) {
+    for (PartReader& part : *parts) {
+      while (!part.is_at_end()) {
+        const auto* const kind = std::find(std::begin(kOrder), std::end(kOrder),
+                                           part.data().data_case());
+        if (kind - std::begin(kOrder) > static_cast<std::ptrdiff_t>(turn)) {
+          break;
+        }
+        absl::Status status = part.WriteRecord(T_joined_map, writer);
+        if (status.ok()) status = part.Advance();
+        if (!status.ok()) return status;
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<WrittenMap> JoinMaps(const std::vector<MapPart>& parts,
+                                    const PoseGraph& pose_graph,
+                                    const Attitudes& attitudes,
+                                    const std::string& output,
+                                    const ProgressCallback& on_progress) {
+  const MeanProgress progress(parts.size(), on_progress);
+  absl::StatusOr<std::vector<PartReader>> readers =
+      OpenParts(parts, progress.callbacks());
+  if (!readers.ok()) return readers.status();
+  absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
+  if (!writer.ok()) return writer.status();
+  const absl::StatusOr<std::map<int, Rigid3>> T_joined_map =
+      WriteBeginning(pose_graph, attitudes, output, &*readers, &*writer);
+  if (!T_joined_map.ok()) return T_joined_map.status();
+  const absl::Status status = WriteRecords(*T_joined_map, &*readers, &*writer);
+  if (!status.ok()) return status;
+  WrittenMap map{*std::move(writer), {}};
+  for (const PartReader& reader : *readers) {
+    reader.AppendAttitudes(&map.attitudes);
+  }
+  return map;
 }
 
 }  // namespace
@@ -271,6 +389,14 @@ std::vector<MapPart> NumberTrajectories(
   return parts;
 }
 
+SubmapId Renumbered(const MapPart& part, const SubmapId& id) {
+  return {part.trajectories.at(id.trajectory), id.index};
+}
+
+NodeId Renumbered(const MapPart& part, const NodeId& id) {
+  return {part.trajectories.at(id.trajectory), id.index};
+}
+
 void AppendMap(const MapPart& part, const MapState& map,
                MapState* const joined) {
   joined->format_version = std::max(joined->format_version, map.format_version);
@@ -278,7 +404,6 @@ void AppendMap(const MapPart& part, const MapState& map,
   for (const auto& [id, submap] : map.submaps) {
     CHECK(joined->submaps.emplace(Renumbered(part, id), submap).second);
   }
-  joined->num_trajectories += map.num_trajectories;
   for (const int trajectory : map.trajectories) {
     joined->trajectories.push_back(part.trajectories.at(trajectory));
   }
@@ -296,95 +421,12 @@ absl::Status WriteJoinedMap(const std::vector<MapPart>& parts,
     absl::Status status = CheckIsNoInput(part.path, output);
     if (!status.ok()) return status;
   }
-  absl::StatusOr<JoinedGraph> joined = ReadJoinedGraph(parts, on_progress);
-  if (!joined.ok()) return joined.status();
-  const absl::StatusOr<bool> changed = UpdatePoseGraph(
-      joined->before, pose_graph, joined->record.mutable_pose_graph());
-  if (!changed.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat("cannot write ", output,
-                                                   ": the joined map ",
-                                                   changed.status().message()));
-  }
-  const std::map<int, Rigid3> T_joined_map =
-      FirstNodesMoved(joined->before, pose_graph);
-
-  std::vector<PartReader> readers;
-  proto::SerializationHeader header;
-  proto::SerializedData options;
-  for (const MapPart& part : parts) {
-    absl::StatusOr<PartReader> reader = PartReader::Open(part, {});
-    if (!reader.ok()) return reader.status();
-    header.set_format_version(
-        std::max(header.format_version(),
-                 static_cast<uint32_t>(reader->format_version())));
-    const absl::StatusOr<proto::AllTrajectoryBuilderOptions> part_options =
-        reader->Options();
-    if (!part_options.ok()) return part_options.status();
-    options.mutable_all_trajectory_builder_options()->MergeFrom(*part_options);
-    readers.push_back(*std::move(reader));
-  }
-  absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
-  if (!writer.ok()) return writer.status();
-  absl::Status status = WriteMessage(header, output, "header", &*writer);
-  if (status.ok()) {
-    status = WriteMessage(joined->record, output, "pose graph", &*writer);
-  }
-  if (status.ok()) {
-    status = WriteMessage(options, output, "list of options", &*writer);
-  }
-  if (!status.ok()) return status;
-
-  // Each file is read once: all go on while they have records of the kind whose
-  // turn it is. What comes too late in a file is written where it comes.
-  for (size_t turn = 0; turn <= std::size(kOrder); ++turn) {
-    for (PartReader& reader : readers) {
-      while (!reader.is_at_end()) {
-        const auto* const kind = std::find(std::begin(kOrder), std::end(kOrder),
-                                           reader.data().data_case());
-        if (kind - std::begin(kOrder) > static_cast<std::ptrdiff_t>(turn)) {
-          break;
-        }
-        const absl::StatusOr<std::string> record = reader.Record(T_joined_map);
-        if (!record.ok()) return record.status();
-        status = writer->Write(*record);
-        if (status.ok()) status = reader.Advance();
-        if (!status.ok()) return status;
-      }
-    }
-    if (on_progress) {
-      on_progress(0.5 + 0.5 * static_cast<double>(turn + 1) /
-                            static_cast<double>(std::size(kOrder) + 1));
-    }
-  }
-  return writer->Commit();
-}
-
-absl::StatusOr<std::map<NodeId, PointCloud2>> ReadJoinedPointClouds(
-    const std::vector<MapPart>& parts, const std::set<NodeId>& nodes,
-    const ProgressCallback& on_progress) {
-  std::map<NodeId, PointCloud2> joined;
-  for (size_t k = 0; k < parts.size(); ++k) {
-    std::set<NodeId> own_nodes;
-    for (const auto& [trajectory, number] : parts[k].trajectories) {
-      for (auto node = nodes.lower_bound(NodeId{number, 0});
-           node != nodes.end() && node->trajectory == number; ++node) {
-        own_nodes.insert(NodeId{trajectory, node->index});
-      }
-    }
-    if (!own_nodes.empty()) {
-      absl::StatusOr<std::map<NodeId, PointCloud2>> clouds =
-          ReadPointClouds(parts[k].path, own_nodes);
-      if (!clouds.ok()) return clouds.status();
-      for (auto& [id, cloud] : *clouds) {
-        joined.emplace(Renumbered(parts[k], id), std::move(cloud));
-      }
-    }
-    if (on_progress) {
-      on_progress(static_cast<double>(k + 1) /
-                  static_cast<double>(parts.size()));
-    }
-  }
-  return joined;
+  absl::StatusOr<RecordWriter> file =
+      WriteWithAssumedAttitudes(pose_graph, [&](const Attitudes& attitudes) {
+        return JoinMaps(parts, pose_graph, attitudes, output, on_progress);
+      });
+  if (!file.ok()) return file.status();
+  return file->Commit();
 }
 
 }  // namespace cartographer_sdf

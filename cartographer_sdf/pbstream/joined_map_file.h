@@ -8,14 +8,12 @@
 #define CARTOGRAPHER_SDF_PBSTREAM_JOINED_MAP_FILE_H_
 
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
@@ -31,6 +29,10 @@ struct MapPart {
 [[nodiscard]] std::vector<MapPart> NumberTrajectories(
     const std::vector<std::string>& paths,
     const std::vector<const MapState*>& maps);
+
+// Ids under the new numbers.
+[[nodiscard]] SubmapId Renumbered(const MapPart& part, const SubmapId& id);
+[[nodiscard]] NodeId Renumbered(const MapPart& part, const NodeId& id);
 
 // Adds a map under its new numbers. Of a landmark that is known already, the
 // pose stays: to the host, equal names are one landmark.
@@ -49,16 +51,11 @@ void AppendMap(const MapPart& part, const MapState& map, MapState* joined);
 // the order within a trajectory. Where GPS has its origin moves along with the
 // first node of the trajectory.
 //
-// Fails as WriteMap does; the output must not be one of the parts.
+// Fails as WriteMap does; the output must not be one of the parts. Decompresses
+// each part once, or twice, for WriteMap's reason.
 [[nodiscard]] absl::Status WriteJoinedMap(
     const std::vector<MapPart>& parts, const PoseGraph& pose_graph,
     const std::string& output, const ProgressCallback& on_progress = {});
-
-// ReadPointClouds of the nodes of all parts, under their new numbers.
-[[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>>
-ReadJoinedPointClouds(const std::vector<MapPart>& parts,
-                      const std::set<NodeId>& nodes,
-                      const ProgressCallback& on_progress = {});
 
 }  // namespace cartographer_sdf
 

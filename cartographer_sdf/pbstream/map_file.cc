@@ -7,60 +7,80 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/pbstream/assumed_attitudes.h"
+#include "cartographer_sdf/pbstream/map_reader.h"
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
+#include "cartographer_sdf/pbstream/pose_graph_codec.h"
 #include "cartographer_sdf/pbstream/pose_graph_update.h"
-#include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/pbstream/state_reader.h"
-#include "cartographer_sdf/pbstream/stored_map.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// Of the records of a file: the header is the first.
-constexpr int kPoseGraphRecord = 1;
-
-// The progress of a part of the work, as that of the whole.
-ProgressCallback Part(const ProgressCallback& on_progress, const double start,
-                      const double size) {
-  if (!on_progress) return {};
-  return [&on_progress, start, size](const double fraction) {
-    on_progress(start + size * fraction);
-  };
+// The pose graph with the changes; none where nothing differs.
+absl::StatusOr<std::optional<std::string>> ChangedPoseGraph(
+    const PoseGraph& pose_graph, const Attitudes& attitudes,
+    proto::SerializedData record) {
+  const absl::StatusOr<bool> changed =
+      UpdatePoseGraph(ToPoseGraph(record.pose_graph(), attitudes), pose_graph,
+                      record.mutable_pose_graph());
+  if (!changed.ok()) return changed.status();
+  std::optional<std::string> result;
+  if (*changed && !record.SerializeToString(&result.emplace())) {
+    return absl::ResourceExhaustedError(
+        "would have a pose graph larger than 2 GiB");
+  }
+  return result;
 }
 
-// Copies all records but the pose graph, which may be replaced.
-absl::Status CopyRecords(const std::string& input, const std::string& output,
-                         const std::optional<std::string>& pose_graph_record,
-                         const ProgressCallback& on_progress) {
-  absl::StatusOr<RecordReader> reader = RecordReader::Open(input);
+absl::StatusOr<WrittenMap> CopyMap(const std::string& input,
+                                   const std::string& output,
+                                   const PoseGraph& pose_graph,
+                                   const Attitudes& attitudes,
+                                   const MapVisitor& visitor,
+                                   const ProgressCallback& on_progress) {
+  absl::StatusOr<MapReader> reader =
+      MapReader::Open(input, visitor, on_progress);
   if (!reader.ok()) return reader.status();
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
   if (!writer.ok()) return writer.status();
-  std::string record;
-  for (int i = 0;; ++i) {
-    const absl::StatusOr<bool> has_record = reader->Read(&record);
-    if (!has_record.ok()) return has_record.status();
-    if (!*has_record) return writer->Commit();
-    const bool is_replaced =
-        i == kPoseGraphRecord && pose_graph_record.has_value();
+  std::optional<std::string> replacement;
+  while (true) {
     const absl::Status status =
-        writer->Write(is_replaced ? *pose_graph_record : record);
+        replacement ? writer->Write(*replacement)
+                    : writer->WriteCompressed(reader->record().compressed());
     if (!status.ok()) return status;
-    if (on_progress) {
-      on_progress(static_cast<double>(reader->position()) /
-                  static_cast<double>(reader->size()));
+    const absl::StatusOr<bool> has_record = reader->Next();
+    if (!has_record.ok()) return has_record.status();
+    if (!*has_record) {
+      return WrittenMap{*std::move(writer), reader->attitudes()};
     }
+    replacement.reset();
+    if (!reader->record().data().has_pose_graph()) continue;
+    absl::StatusOr<std::optional<std::string>> changed =
+        ChangedPoseGraph(pose_graph, attitudes, reader->record().data());
+    if (!changed.ok()) {
+      return absl::Status(changed.status().code(),
+                          absl::StrCat("cannot write ", output, ": ", input,
+                                       " ", changed.status().message()));
+    }
+    replacement = *std::move(changed);
   }
 }
 
 }  // namespace
 
 absl::StatusOr<MapState> ReadMap(const std::string& path,
-                                 const SubmapCallback& on_submap,
+                                 const MapVisitor& visitor,
                                  const ProgressCallback& on_progress) {
-  absl::StatusOr<StoredMap> map = ReadStoredMap(path, on_submap, on_progress);
-  if (!map.ok()) return map.status();
-  return std::move(map->state);
+  absl::StatusOr<MapReader> reader =
+      MapReader::Open(path, visitor, on_progress);
+  if (!reader.ok()) return reader.status();
+  while (true) {
+    const absl::StatusOr<bool> has_record = reader->Next();
+    if (!has_record.ok()) return has_record.status();
+    if (!*has_record) return reader->Finish();
+  }
 }
 
 absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
@@ -92,22 +112,26 @@ absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
 absl::Status WriteMap(const std::string& input, const std::string& output,
                       const PoseGraph& pose_graph,
                       const ProgressCallback& on_progress) {
-  absl::StatusOr<StoredMap> map =
-      ReadStoredMap(input, {}, Part(on_progress, 0., 0.5));
+  absl::StatusOr<PreparedMap> map =
+      PrepareMap(input, output, pose_graph, {}, on_progress);
   if (!map.ok()) return map.status();
-  proto::SerializedData& record = map->pose_graph_record;
-  const absl::StatusOr<bool> changed = UpdatePoseGraph(
-      map->state.pose_graph, pose_graph, record.mutable_pose_graph());
-  if (!changed.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "cannot write ", output, ": ", input, " ", changed.status().message()));
-  }
-  std::optional<std::string> new_record;
-  if (*changed && !record.SerializeToString(&new_record.emplace())) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "cannot write ", output, ": its pose graph is larger than 2 GiB"));
-  }
-  return CopyRecords(input, output, new_record, Part(on_progress, 0.5, 0.5));
+  return map->Commit();
+}
+
+absl::StatusOr<PreparedMap> PrepareMap(const std::string& input,
+                                       const std::string& output,
+                                       const PoseGraph& pose_graph,
+                                       const MapVisitor& visitor,
+                                       const ProgressCallback& on_progress) {
+  // Who has seen all is not called again.
+  MapVisitor next_visitor = visitor;
+  absl::StatusOr<RecordWriter> file =
+      WriteWithAssumedAttitudes(pose_graph, [&](const Attitudes& attitudes) {
+        return CopyMap(input, output, pose_graph, attitudes,
+                       std::exchange(next_visitor, {}), on_progress);
+      });
+  if (!file.ok()) return file.status();
+  return PreparedMap(*std::move(file));
 }
 
 }  // namespace cartographer_sdf

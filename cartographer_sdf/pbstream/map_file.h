@@ -16,13 +16,16 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/execution/progress.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/pbstream/point_cloud.h"
+#include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
@@ -43,35 +46,42 @@ struct MapState {
   // A submap or node may be here without a record of its own.
   PoseGraph pose_graph;
   std::map<SubmapId, SubmapSummary> submaps;
-  int num_trajectories = 0;
-  // Their ids, in the order of the file.
+  // Ids, in the order of the file.
   std::vector<int> trajectories;
   // Number of records of each kind, by the name of the field of
   // SerializedData ("submap", "node", "imu_data", ..., "unknown").
   std::map<std::string, int> num_records;
 };
 
-// Fraction of the file that is done, in [0, 1].
-using ProgressCallback = std::function<void(double)>;
-// Called for each submap with a grid, in file order. The grid is in the submap
-// frame; a TSDF's cells become the occupancy that its distance implies, see
-// grid_conversion.h.
+// Called for each submap with a grid. The grid is in the submap frame; a TSDF's
+// cells become the occupancy that its distance implies, see grid_conversion.h.
 using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
                                           const OccupancyGrid&)>;
+// Called for each node with filtered range data.
+using PointCloudCallback = std::function<void(const NodeId&, PointCloud2)>;
 
+// Gets the content of a map that is too large to be kept, in file order, while
+// the file is read. Point clouds are decoded where somebody wants them alone.
+struct MapVisitor {
+  SubmapCallback on_submap = {};
+  PointCloudCallback on_point_cloud = {};
+};
+
+// Decompresses the file once, whatever is visited. Progress is that of bytes.
 [[nodiscard]] absl::StatusOr<MapState> ReadMap(
-    const std::string& path, const SubmapCallback& on_submap = {},
+    const std::string& path, const MapVisitor& visitor = {},
     const ProgressCallback& on_progress = {});
 
 // The filtered range data of the given nodes; a node without data is absent.
+// A reading of its own: who reads the map anyway is better off with a visitor.
 [[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
     const std::string& path, const std::set<NodeId>& nodes,
     const ProgressCallback& on_progress = {});
 
 // Copies `input` to `output` with the poses of submaps, nodes and landmarks and
 // the constraints of `pose_graph`; every other record is copied byte for byte,
-// and so is the pose graph if nothing differs from ReadMap(input). Unknown
-// fields survive everywhere.
+// compressed as it is, and so is the pose graph if nothing differs from
+// ReadMap(input). Unknown fields survive everywhere.
 //
 // - Poses that differ are written as the host writes optimised ones, others
 //   stay as they are, as do elements that `pose_graph` lacks.
@@ -82,11 +92,34 @@ using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
 //
 // The output appears when it is whole or not at all, and may be the input. An
 // error too if `pose_graph` has elements that the input lacks, or numbers that
-// are not finite. Odometry is not written.
+// are not finite, or where ReadMap(input) fails. Odometry is not written.
+//
+// Decompresses the input once, and twice where `pose_graph` lacks nodes or has
+// other gravity alignments than the input, see assumed_attitudes.h.
 [[nodiscard]] absl::Status WriteMap(const std::string& input,
                                     const std::string& output,
                                     const PoseGraph& pose_graph,
                                     const ProgressCallback& on_progress = {});
+
+// A map that is written but does not appear before Commit(); without it, it
+// leaves nothing behind.
+class PreparedMap {
+ public:
+  explicit PreparedMap(RecordWriter file) : file_(std::move(file)) {}
+
+  // At most once.
+  [[nodiscard]] absl::Status Commit() { return file_.Commit(); }
+
+ private:
+  RecordWriter file_;
+};
+
+// WriteMap() in two steps, for those who have something to do between, and who
+// want to see the content of the input as it passes.
+[[nodiscard]] absl::StatusOr<PreparedMap> PrepareMap(
+    const std::string& input, const std::string& output,
+    const PoseGraph& pose_graph, const MapVisitor& visitor = {},
+    const ProgressCallback& on_progress = {});
 
 }  // namespace cartographer_sdf
 

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -74,6 +75,9 @@ proto::CompressedPointCloud CompressPointCloud(const PointCloud2& points) {
 absl::StatusOr<PointCloud2> DecompressPointCloud(
     const proto::CompressedPointCloud& cloud) {
   PointCloud2 points;
+  // At most what is there, whatever is claimed.
+  points.reserve(static_cast<size_t>(
+      std::clamp(cloud.num_points(), 0, cloud.point_data_size())));
   const int* value = cloud.point_data().data();
   const int* const end = value + cloud.point_data_size();
   while (value != end) {

@@ -8,8 +8,10 @@
 #define CARTOGRAPHER_SDF_PBSTREAM_POSE_CODEC_H_
 
 #include <Eigen/Geometry>
+#include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/geometry/rigid3.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 
@@ -18,6 +20,12 @@ namespace cartographer_sdf {
 // Of a translation and of a corner of a grid [m]: no robot goes there, and
 // products of poses stay finite.
 constexpr double kMaxCoordinate = 1e9;
+
+// "submap 0,3", say, for errors.
+template <typename IdType>
+[[nodiscard]] std::string Name(const char* const kind, const IdType& id) {
+  return absl::StrCat(kind, " ", id.trajectory, ",", id.index);
+}
 
 // Normalises. An error unless the norm is a positive finite number.
 [[nodiscard]] absl::StatusOr<Eigen::Quaterniond> FromProto(

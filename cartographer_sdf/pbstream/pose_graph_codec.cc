@@ -18,11 +18,6 @@ namespace {
 // Differences of times must not overflow [100 ns].
 constexpr int64_t kMaxTime = std::numeric_limits<int64_t>::max() / 2;
 
-template <typename IdType>
-std::string Name(const char* const kind, const IdType& id) {
-  return absl::StrCat(kind, " ", id.trajectory, ",", id.index);
-}
-
 absl::Status Problem(const std::string& subject, const absl::Status& status) {
   return absl::DataLossError(
       absl::StrCat("has ", subject, ", which ", status.message()));
@@ -205,7 +200,7 @@ absl::Status CheckPoseGraph(const proto::PoseGraph& stored) {
 }
 
 PoseGraph ToPoseGraph(const proto::PoseGraph& stored,
-                      const std::map<NodeId, NodeAttitude>& attitudes) {
+                      const Attitudes& attitudes) {
   PoseGraph graph;
   for (const proto::Trajectory& trajectory : stored.trajectory()) {
     const int trajectory_id = trajectory.trajectory_id();

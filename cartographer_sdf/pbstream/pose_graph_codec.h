@@ -34,6 +34,9 @@ struct NodeAttitude {
   std::optional<Rigid3> local_pose;
 };
 
+// Nodes that are absent have no record of their own.
+using Attitudes = std::map<NodeId, NodeAttitude>;
+
 // An absent gravity alignment is none.
 [[nodiscard]] absl::StatusOr<NodeAttitude> ReadNodeAttitude(
     const proto::NodeData& data);
@@ -44,9 +47,8 @@ struct NodeAttitude {
 
 // `stored` must have passed the check. Nodes without attitude get an identity
 // gravity alignment. Odometry is left absent.
-[[nodiscard]] PoseGraph ToPoseGraph(
-    const proto::PoseGraph& stored,
-    const std::map<NodeId, NodeAttitude>& attitudes);
+[[nodiscard]] PoseGraph ToPoseGraph(const proto::PoseGraph& stored,
+                                    const Attitudes& attitudes);
 
 }  // namespace cartographer_sdf
 

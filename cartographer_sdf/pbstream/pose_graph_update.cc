@@ -18,11 +18,6 @@
 namespace cartographer_sdf {
 namespace {
 
-template <typename IdType>
-std::string Name(const char* const kind, const IdType& id) {
-  return absl::StrCat(kind, " ", id.trajectory, ",", id.index);
-}
-
 Rigid3 Tracking(const Rigid2& T_a_node, const Eigen::Quaterniond& gravity) {
   return Embed3D(T_a_node) * Rigid3::Rotation(gravity);
 }

@@ -141,6 +141,7 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
   z_stream& stream = *stream_;
   CHECK_EQ(inflateReset(&stream), Z_OK);
   stream.avail_in = 0;
+  compressed_.clear();
   std::array<char, kChunkSize> input;
   std::array<char, kChunkSize> output;
   int result = Z_OK;
@@ -151,6 +152,7 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
         return status;
       }
       compressed_size -= count;
+      compressed_.append(input.data(), static_cast<size_t>(count));
       stream.next_in = reinterpret_cast<Bytef*>(input.data());
       stream.avail_in = static_cast<uInt>(count);
     }
@@ -271,14 +273,13 @@ std::string RecordWriter::Deflate(const std::string& record) {
 }
 
 absl::Status RecordWriter::Write(const std::string& record) {
-  CHECK_GE(file_descriptor_, 0) << "written after Commit()";
   CHECK_LE(static_cast<int64_t>(record.size()), kMaxRecordSize);
-  const std::string compressed = Deflate(record);
-  if (absl::Status status = WriteBytes(EncodeWord(compressed.size()));
-      !status.ok()) {
-    return status;
-  }
-  return WriteBytes(compressed);
+  return WriteCompressed(Deflate(record));
+}
+
+absl::Status RecordWriter::WriteCompressed(const std::string& member) {
+  CHECK_GE(file_descriptor_, 0) << "written after Commit()";
+  return WriteBytes(EncodeWord(member.size()) + member);
 }
 
 absl::Status RecordWriter::Commit() {

@@ -35,6 +35,8 @@ class RecordReader {
   // file is truncated or corrupted. Memory grows with what was decompressed,
   // not with what a length claims.
   [[nodiscard]] absl::StatusOr<bool> Read(std::string* record);
+  // The record read last as the file has it: its gzip member.
+  [[nodiscard]] const std::string& compressed() const { return compressed_; }
 
   // Bytes read and size of the file.
   [[nodiscard]] int64_t position() const { return position_; }
@@ -54,6 +56,7 @@ class RecordReader {
   std::string path_;
   std::ifstream file_;
   ZlibStream stream_;
+  std::string compressed_;
   int64_t position_ = 0;
   int64_t size_ = 0;
   int num_records_ = 0;
@@ -74,6 +77,9 @@ class RecordWriter {
 
   // After an error, or after Commit(), the writer is done with.
   [[nodiscard]] absl::Status Write(const std::string& record);
+  // A record as RecordReader::compressed() has it, which need not be compressed
+  // anew.
+  [[nodiscard]] absl::Status WriteCompressed(const std::string& member);
   [[nodiscard]] absl::Status Commit();
 
  private:

@@ -15,7 +15,7 @@ constexpr uint32_t kMaxFormatVersion = 2;
 }  // namespace
 
 absl::StatusOr<StateReader> StateReader::Open(
-    const std::string& path, const std::function<void(double)>& on_progress) {
+    const std::string& path, const ProgressCallback& on_progress) {
   absl::StatusOr<RecordReader> records = RecordReader::Open(path);
   if (!records.ok()) return records.status();
   StateReader reader(*std::move(records));

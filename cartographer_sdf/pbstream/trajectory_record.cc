@@ -25,48 +25,72 @@ std::vector<int> PathToTrajectory(const Kind kind) {
   return {kind, 1};
 }
 
+// A trajectory's new number and where it belongs, see PathToTrajectory.
+struct NewNumber {
+  std::vector<int> path;
+  int number;
+};
+
+bool IsLeaf(const NewNumber& target, const size_t depth) {
+  return depth + 1 == target.path.size();
+}
+
+// Whether the field is path[depth]. One of another type is unknown to every
+// reader.
+bool IsOnPath(const UnknownField& field, const NewNumber& target,
+              const size_t depth) {
+  return field.number() == target.path[depth] &&
+         field.type() == (IsLeaf(target, depth)
+                              ? UnknownField::TYPE_VARINT
+                              : UnknownField::TYPE_LENGTH_DELIMITED);
+}
+
+bool HasPath(const UnknownFieldSet& message, const NewNumber& target,
+             const size_t depth) {
+  for (int i = 0; i < message.field_count(); ++i) {
+    if (IsOnPath(message.field(i), target, depth)) return true;
+  }
+  return false;
+}
+
+void CopyWithNumber(const UnknownFieldSet& message, const NewNumber& target,
+                    size_t depth, UnknownFieldSet* result);
+
+// Adds a copy of a message as path[depth].
+void AddWithNumber(const UnknownFieldSet& message, const NewNumber& target,
+                   const size_t depth, UnknownFieldSet* const result) {
+  UnknownFieldSet copy;
+  CopyWithNumber(message, target, depth + 1, &copy);
+  CHECK(copy.SerializeToString(result->AddLengthDelimited(target.path[depth])));
+}
+
+void AddNumber(const NewNumber& target, const size_t depth,
+               UnknownFieldSet* const result) {
+  if (IsLeaf(target, depth)) {
+    result->AddVarint(target.path[depth], static_cast<uint64_t>(target.number));
+  } else {
+    AddWithNumber(UnknownFieldSet(), target, depth, result);
+  }
+}
+
 // Copies the bare fields of a message, in order, with the number at
 // path[depth...] set. A message within that occurs twice is one message in two
 // parts, of which the later one counts: both are set.
-void CopyWithNumber(const UnknownFieldSet& message,
-                    const std::vector<int>& path, const size_t depth,
-                    const int number, UnknownFieldSet* const result) {
-  const bool is_leaf = depth + 1 == path.size();
-  // A field of another type is unknown to every reader.
-  const auto is_on_path = [&](const UnknownField& field) {
-    return field.number() == path[depth] &&
-           field.type() == (is_leaf ? UnknownField::TYPE_VARINT
-                                    : UnknownField::TYPE_LENGTH_DELIMITED);
-  };
-  const auto add_message = [&](const UnknownFieldSet& inner) {
-    UnknownFieldSet copy;
-    CopyWithNumber(inner, path, depth + 1, number, &copy);
-    CHECK(copy.SerializeToString(result->AddLengthDelimited(path[depth])));
-  };
-  const auto add_number = [&] {
-    if (is_leaf) {
-      result->AddVarint(path[depth], static_cast<uint64_t>(number));
-    } else {
-      add_message(UnknownFieldSet());
-    }
-  };
-  bool is_present = false;
-  for (int i = 0; i < message.field_count(); ++i) {
-    is_present |= is_on_path(message.field(i));
-  }
+void CopyWithNumber(const UnknownFieldSet& message, const NewNumber& target,
+                    const size_t depth, UnknownFieldSet* const result) {
   // A number that is zero is absent; it belongs at the beginning.
-  if (!is_present) add_number();
+  if (!HasPath(message, target, depth)) AddNumber(target, depth, result);
   bool is_set = false;
   for (int i = 0; i < message.field_count(); ++i) {
     const UnknownField& field = message.field(i);
-    if (!is_on_path(field)) {
+    if (!IsOnPath(field, target, depth)) {
       result->AddField(field);
-    } else if (!is_leaf) {
+    } else if (!IsLeaf(target, depth)) {
       UnknownFieldSet inner;
       CHECK(inner.ParseFromString(field.length_delimited()));
-      add_message(inner);
+      AddWithNumber(inner, target, depth, result);
     } else if (!is_set) {
-      add_number();
+      AddNumber(target, depth, result);
       is_set = true;
     }
   }
@@ -106,7 +130,7 @@ std::string WithTrajectory(const std::string& record,
   UnknownFieldSet fields;
   CHECK(fields.ParseFromString(record));
   UnknownFieldSet copy;
-  CopyWithNumber(fields, PathToTrajectory(data.data_case()), 0, trajectory,
+  CopyWithNumber(fields, {PathToTrajectory(data.data_case()), trajectory}, 0,
                  &copy);
   std::string result;
   CHECK(copy.SerializeToString(&result));

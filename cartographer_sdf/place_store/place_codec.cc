@@ -19,10 +19,10 @@ constexpr int kNumbersPerFeature = 5;
 // Along either axis; 1.6 km at 5 cm.
 constexpr int kMaxNumCells = 1 << 15;
 // Larger coordinates are no submap's [m].
-constexpr double kMaxCoordinate = 1e5;
+constexpr double kMaxStoredCoordinate = 1e5;
 
 bool IsCoordinate(const double value) {
-  return std::abs(value) <= kMaxCoordinate;  // false for NaN
+  return std::abs(value) <= kMaxStoredCoordinate;  // false for NaN
 }
 
 proto::place_index::Pose ToProto(const Rigid2& pose) {

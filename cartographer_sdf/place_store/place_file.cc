@@ -53,6 +53,44 @@ absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
   return absl::OkStatus();
 }
 
+absl::StatusOr<proto::place_index::Header> ReadHeader(
+    RecordReader* const reader) {
+  std::string record;
+  const absl::StatusOr<bool> has_record = reader->Read(&record);
+  if (!has_record.ok()) return has_record.status();
+  proto::place_index::Header header;
+  if (!*has_record || !header.ParseFromString(record)) {
+    return reader->Corrupted("is no header of a file of places");
+  }
+  return header;
+}
+
+// All places after the header.
+absl::StatusOr<std::map<SubmapId, Place>> ReadRecords(
+    RecordReader* const reader) {
+  std::map<SubmapId, Place> places;
+  std::optional<Eigen::Index> descriptor_length;
+  std::string record;
+  while (true) {
+    const absl::StatusOr<bool> has_record = reader->Read(&record);
+    if (!has_record.ok()) return has_record.status();
+    if (!*has_record) return places;
+    absl::StatusOr<Place> place = DecodePlace(record);
+    if (!place.ok()) return reader->Corrupted(place.status().message());
+    if (!place->features.features.empty()) {
+      const Eigen::Index length = place->features.descriptors.rows();
+      if (length != descriptor_length.value_or(length)) {
+        return reader->Corrupted("has descriptors of another length");
+      }
+      descriptor_length = length;
+    }
+    const SubmapId id = place->id;
+    if (!places.emplace(id, *std::move(place)).second) {
+      return reader->Corrupted("has a place that was there before");
+    }
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<PlaceFileKey> MakePlaceFileKey(const std::string& map_path,
@@ -97,40 +135,18 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadPlaces(const std::string& path,
   }
   absl::StatusOr<RecordReader> reader = RecordReader::Open(path);
   if (!reader.ok()) return reader.status();
-  std::string record;
-  absl::StatusOr<bool> more = reader->Read(&record);
-  if (!more.ok()) return more.status();
-  proto::place_index::Header header;
-  if (!*more || !header.ParseFromString(record)) {
-    return reader->Corrupted("is no header of a file of places");
-  }
-  if (absl::Status status = CheckHeader(path, key, header); !status.ok()) {
+  const absl::StatusOr<proto::place_index::Header> header =
+      ReadHeader(&*reader);
+  if (!header.ok()) return header.status();
+  if (absl::Status status = CheckHeader(path, key, *header); !status.ok()) {
     return status;
   }
-  std::map<SubmapId, Place> places;
-  std::optional<Eigen::Index> descriptor_length;
-  while (true) {
-    more = reader->Read(&record);
-    if (!more.ok()) return more.status();
-    if (!*more) break;
-    absl::StatusOr<Place> place = DecodePlace(record);
-    if (!place.ok()) return reader->Corrupted(place.status().message());
-    if (!place->features.features.empty()) {
-      const Eigen::Index length = place->features.descriptors.rows();
-      if (length != descriptor_length.value_or(length)) {
-        return reader->Corrupted("has descriptors of another length");
-      }
-      descriptor_length = length;
-    }
-    const SubmapId id = place->id;
-    if (!places.emplace(id, *std::move(place)).second) {
-      return reader->Corrupted("has a place that was there before");
-    }
-  }
-  if (static_cast<int64_t>(places.size()) != header.num_places()) {
+  absl::StatusOr<std::map<SubmapId, Place>> places = ReadRecords(&*reader);
+  if (!places.ok()) return places.status();
+  if (static_cast<int64_t>(places->size()) != header->num_places()) {
     return absl::DataLossError(absl::StrCat(path, " is corrupted: it has ",
-                                            places.size(), " places of ",
-                                            header.num_places()));
+                                            places->size(), " places of ",
+                                            header->num_places()));
   }
   return places;
 }

@@ -16,7 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/grid/submap_id.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 
 namespace cartographer_sdf {
 

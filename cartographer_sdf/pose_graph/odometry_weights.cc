@@ -10,7 +10,7 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr int kMinNumSteps = 20;
-// Odometry that differs from local SLAM by less on average tells nothing [m],
+// Odometry that on average differs less from local SLAM is uninformative [m],
 // [rad].
 constexpr double kMinTranslationDifference = 1e-5;
 constexpr double kMinRotationDifference = 1e-6;

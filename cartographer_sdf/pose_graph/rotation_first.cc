@@ -13,7 +13,7 @@ namespace cartographer_sdf {
 namespace {
 
 // It is a start, not the answer.
-constexpr double kFunctionTolerance = 1e-2;
+constexpr double kRotationTolerance = 1e-2;
 constexpr int kMaxNumIterations = 50;
 
 // A residual of two unknown 2-vectors: from_end * end - from_start * start -
@@ -67,7 +67,7 @@ bool SolveLinear(const SpaGraph& graph, const double huber_scale,
         make_cost(edge), edge.robust ? &huber_loss : nullptr,
         (*unknowns)[edge.start].data(), (*unknowns)[edge.end].data());
   }
-  return SolveSparse(kMaxNumIterations, kFunctionTolerance, &problem).usable;
+  return SolveSparse(kMaxNumIterations, kRotationTolerance, &problem).usable;
 }
 
 }  // namespace

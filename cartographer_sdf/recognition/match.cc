@@ -57,15 +57,13 @@ std::optional<Match> MatchAsPaper(
       options.ransac, reference.features, query.features, correspondences,
       PairSeed(options.seed, reference.id, query.id));
   if (!alignment) return std::nullopt;
+  const int num_inliers = static_cast<int>(alignment->inliers.size());
   Match match;
-  match.closure.reference = reference.id;
-  match.closure.query = query.id;
-  match.closure.T_reference_query = alignment->T_reference_query;
-  match.closure.score = static_cast<double>(alignment->inliers.size());
-  match.closure.evidence.inliers = static_cast<int>(alignment->inliers.size());
-  match.verdict = match.closure.evidence.inliers >= options.min_num_inliers
-                      ? Verdict::kAccepted
-                      : Verdict::kUnlikely;
+  match.pair = {reference.id, query.id, alignment->T_reference_query,
+                static_cast<double>(num_inliers)};
+  match.pair_score = match.pair.score;
+  match.verdict = num_inliers >= options.min_num_inliers ? Verdict::kAccepted
+                                                         : Verdict::kUnlikely;
   for (const Correspondence& c : alignment->inliers) {
     match.inliers.emplace_back(
         reference.features.features[c.reference].keypoint.position,
@@ -74,56 +72,25 @@ std::optional<Match> MatchAsPaper(
   return match;
 }
 
-std::vector<Rigid2> ProposePoses(
-    const HypothesisOptions& options, const Place& reference,
-    const Place& query, const std::vector<Correspondence>& correspondences) {
-  std::vector<Rigid2> poses;
-  for (const Hypothesis& hypothesis : ProposeHypotheses(
-           options, reference.features, query.features, correspondences)) {
-    poses.push_back(hypothesis.T_reference_query);
-  }
-  return poses;
-}
-
 Match MakeMatch(const MatchOptions& options, const Place& reference,
                 const Place& query,
                 const std::vector<Correspondence>& correspondences,
-                Verification verification) {
+                VerifiedPose verified) {
   Match match;
-  match.verdict = verification.verdict;
+  match.pair = {reference.id, query.id, verified.T_reference_query,
+                verified.score};
+  match.verdict = verified.verdict;
+  match.evidence = verified.evidence;
+  match.pair_score = verified.score;
+  match.margin = verified.margin;
+  match.rivals = std::move(verified.rivals);
   match.inliers =
       CollectInliers(options.inlier_distance_meters, reference, query,
-                     correspondences, verification.T_reference_query);
-  match.closure =
-      LoopClosure{reference.id,
-                  query.id,
-                  verification.T_reference_query,
-                  verification.information,
-                  verification.score,
-                  EvidenceOf(verification.agreement,
-                             static_cast<int>(match.inliers.size()))};
-  match.verification = std::move(verification);
+                     correspondences, match.pair.T_reference_query);
   return match;
 }
 
 }  // namespace
-
-ClosureEvidence EvidenceOf(const Agreement& agreement, const int num_inliers) {
-  const DirectedAgreement& a = agreement.query_in_reference;
-  const DirectedAgreement& b = agreement.reference_in_query;
-  ClosureEvidence evidence;
-  evidence.inliers = num_inliers;
-  evidence.overlap_area = agreement.overlap_area;
-  evidence.overlap = agreement.overlap;
-  evidence.hit_ratio = std::min(a.HitRatio(), b.HitRatio());
-  evidence.contradiction_ratio =
-      std::max(a.ContradictionRatio(), b.ContradictionRatio());
-  const double hits = a.hits + b.hits;
-  evidence.residual =
-      hits > 0. ? std::sqrt((a.squared_distance + b.squared_distance) / hits)
-                : 0.;
-  return evidence;
-}
 
 std::string Validate(const MatchOptions& options) {
   for (const std::string& error :
@@ -156,7 +123,7 @@ void FindSelfSimilarities(const MatchOptions& options, Place* const place) {
   CHECK_EQ(Validate(options), "");
   place->surface.self_similar_poses = FindSelfSimilarPoses(
       options.verification, place->surface,
-      ProposePoses(options.hypotheses, *place, *place,
+      ProposePoses(options.hypotheses, place->features, place->features,
                    FindCorrespondences(options.correspondence, place->features,
                                        place->features)));
 }
@@ -169,20 +136,21 @@ std::optional<Match> MatchPlaces(const MatchOptions& options,
   if (options.method == Method::kPaper) {
     return MatchAsPaper(options, reference, query, correspondences);
   }
-  std::optional<Verification> verification = VerifyHypotheses(
-      options.verification, reference.surface, query.surface,
-      ProposePoses(options.hypotheses, reference, query, correspondences));
-  if (!verification) return std::nullopt;
+  std::optional<VerifiedPose> verified =
+      VerifyHypotheses(options.verification, reference.surface, query.surface,
+                       ProposePoses(options.hypotheses, reference.features,
+                                    query.features, correspondences));
+  if (!verified) return std::nullopt;
   return MakeMatch(options, reference, query, correspondences,
-                   *std::move(verification));
+                   *std::move(verified));
 }
 
 Match MakeMatch(const MatchOptions& options, const Place& reference,
-                const Place& query, Verification verification) {
+                const Place& query, VerifiedPose verified) {
   return MakeMatch(options, reference, query,
                    FindCorrespondences(options.correspondence,
                                        reference.features, query.features),
-                   std::move(verification));
+                   std::move(verified));
 }
 
 }  // namespace cartographer_sdf

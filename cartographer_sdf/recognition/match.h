@@ -6,15 +6,17 @@
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "cartographer_sdf/closure/loop_closure.h"
+#include "cartographer_sdf/grid/pair_pose.h"
 #include "cartographer_sdf/matching/correspondence.h"
-#include "cartographer_sdf/matching/hypotheses.h"
+#include "cartographer_sdf/matching/pose_voter.h"
 #include "cartographer_sdf/matching/ransac.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/verification/verification.h"
 
 namespace cartographer_sdf {
@@ -23,7 +25,7 @@ enum class Method {
   // Many hypotheses, judged by walls and free space; score in log-odds.
   kSdf,
   // [Millane2019] as printed: ratio test, RANSAC, and the number of inliers as
-  // the score.
+  // the score. Nothing is verified: evidence, margin and rivals stay empty.
   kPaper,
 };
 
@@ -46,7 +48,7 @@ struct MatchOptions {
 [[nodiscard]] PlaceOptions PaperPlaceOptions();
 [[nodiscard]] MatchOptions PaperMatchOptions();
 
-// What neighbouring pairs of submaps, as a match predicts them, agree on; see
+// What the neighbouring pairs of submaps show where a match predicts them; see
 // neighbourhood.h. Lengths of wall are weighted by certainty.
 struct NeighbourhoodEvidence {
   int num_pairs = 0;
@@ -54,25 +56,25 @@ struct NeighbourhoodEvidence {
   double contradicting_length = 0.;  // of it, in the other's free space [m]
 };
 
+// A pose of a pair of submaps, accepted or not.
 struct Match {
-  Verdict verdict;
-  LoopClosure closure;  // with score and evidence, accepted or not
-  // Pairs of keypoints (reference, query) that agree, each in its own frame.
+  PairPose pair;
+  Verdict verdict = Verdict::kUnlikely;
+  PairEvidence evidence;
+  // Score of the pair alone; pair.score differs from it where the neighbourhood
+  // was verified too.
+  double pair_score = 0.;
+  double margin = 0.;          // as VerifiedPose::margin
+  std::vector<Rigid2> rivals;  // as VerifiedPose::rivals
+  // Keypoints (reference, query) that agree with the pose, each in its own
+  // submap frame.
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> inliers;
-  // Absent for method kPaper.
-  std::optional<Verification> verification;
-  // Absent where nobody asked; else score and verdict are those in the
-  // neighbourhood, and `verification` is the pair's own.
+  // Absent where the neighbourhood was not verified.
   std::optional<NeighbourhoodEvidence> neighbourhood;
 };
 
-// Of two submaps in one pose, the worse of both directions; `num_inliers` pairs
-// of keypoints led to it, 0 where none did.
-[[nodiscard]] ClosureEvidence EvidenceOf(const Agreement& agreement,
-                                         int num_inliers = 0);
-
 // Finds the poses in which a place resembles itself, by matching it with
-// itself, so that look-alikes are noticed when it is matched with others.
+// itself, so that rivals are noticed when it is matched with others.
 void FindSelfSimilarities(const MatchOptions& options, Place* place);
 
 // None where there is no pose worth reporting.
@@ -80,11 +82,10 @@ void FindSelfSimilarities(const MatchOptions& options, Place* place);
                                                const Place& reference,
                                                const Place& query);
 
-// The match that a verification of method kSdf amounts to; its score and
-// verdict are the verification's.
+// The match that a verified pose of method kSdf amounts to.
 [[nodiscard]] Match MakeMatch(const MatchOptions& options,
                               const Place& reference, const Place& query,
-                              Verification verification);
+                              VerifiedPose verified);
 
 }  // namespace cartographer_sdf
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 
 #include "glog/logging.h"
@@ -15,7 +14,7 @@ namespace cartographer_sdf {
 namespace {
 
 // Keeps the logarithm finite: less than one wall point in a hundred contradicts
-// by noise.
+// by noise alone.
 constexpr double kNoiseRatio = 0.01;
 
 struct NeighbourhoodTerm {
@@ -26,9 +25,9 @@ constexpr std::array<NeighbourhoodTerm, kNumNeighbourhoodTerms> kTerms = {
     {{"pair_score", &NeighbourhoodWeights::pair_score},
      {"log_contradiction", &NeighbourhoodWeights::log_contradiction}}};
 
-// Itself and the neighbours that are there.
+// The submap itself and the neighbours that exist.
 std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
-                                 const PlacesAlongTrajectories& map,
+                                 const TrajectoryPlaces& map,
                                  const SubmapId& id) {
   std::vector<SubmapId> neighbours;
   for (int step = -options.num_steps; step <= options.num_steps; ++step) {
@@ -42,24 +41,49 @@ std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
   return neighbours;
 }
 
-Rigid2 RelativePose(const PlacesAlongTrajectories& map, const SubmapId& a,
+Rigid2 RelativePose(const TrajectoryPlaces& map, const SubmapId& a,
                     const SubmapId& b) {
   return map.odometry->at(a).T_local_submap.Inverse() *
          map.odometry->at(b).T_local_submap;
 }
 
-// Wall of `points` in metres: each point stands for those not looked at.
+// Adds the wall of `points` in metres: each point stands for those not sampled.
 void Add(const AgreementOptions& options, const SurfaceModel& model,
          const SurfaceModel& points, const Rigid2& T_model_points,
-         const int max_num_points, NeighbourhoodEvidence* const evidence) {
+         NeighbourhoodEvidence* const evidence) {
   const DirectedAgreement agreement =
-      MeasureAgreement(options, model, points, T_model_points, max_num_points);
-  const double looked_at = static_cast<double>(
-      std::min(points.walls.size(), static_cast<size_t>(max_num_points)));
+      MeasureAgreement(options, model, points.walls, T_model_points);
+  const double num_sampled = static_cast<double>(std::min(
+      points.walls.size(), static_cast<size_t>(options.max_num_points)));
   const double stands_for = static_cast<double>(points.walls.size()) /
-                            looked_at * points.geometry.resolution;
+                            num_sampled * points.geometry.resolution;
   evidence->wall_length += stands_for * agreement.num_points;
   evidence->contradicting_length += stands_for * agreement.contradictions;
+}
+
+// Registers a pair of neighbours from its predicted pose and adds what it
+// shows. None where too little is observed by both, before or after.
+std::optional<Rigid2> AddPair(const NeighbourhoodOptions& options,
+                              const VerificationOptions& verification,
+                              const SurfaceModel& reference,
+                              const SurfaceModel& query,
+                              const Rigid2& predicted,
+                              NeighbourhoodEvidence* const evidence) {
+  if (OverlapArea(reference, query, predicted) < options.min_overlap_area) {
+    return std::nullopt;
+  }
+  const std::optional<Rigid2> registered =
+      RegisterSubmaps(verification.registration, reference, query, predicted);
+  if (!registered ||
+      OverlapArea(reference, query, *registered) < options.min_overlap_area) {
+    return std::nullopt;
+  }
+  AgreementOptions agreement = verification.agreement;
+  agreement.max_num_points = options.num_points;
+  ++evidence->num_pairs;
+  Add(agreement, reference, query, *registered, evidence);
+  Add(agreement, query, reference, registered->Inverse(), evidence);
+  return registered;
 }
 
 }  // namespace
@@ -125,44 +149,28 @@ double NeighbourhoodScore(const NeighbourhoodOptions& options,
   return std::min(score, pair_score + options.max_gain);
 }
 
-Neighbourhood AskNeighbours(const NeighbourhoodOptions& options,
-                            const VerificationOptions& verification,
-                            const PlacesAlongTrajectories& references,
-                            const PlacesAlongTrajectories& queries,
-                            const std::optional<int> min_index_gap,
-                            const SubmapId& reference, const SubmapId& query,
-                            const Rigid2& T_reference_query) {
+Neighbourhood MeasureNeighbourhood(const NeighbourhoodOptions& options,
+                                   const VerificationOptions& verification,
+                                   const TrajectoryPlaces& references,
+                                   const TrajectoryPlaces& queries,
+                                   const std::optional<int> min_index_gap,
+                                   const PairPose& pair) {
   CHECK_EQ(Validate(options), "");
   Neighbourhood neighbourhood;
-  for (const SubmapId& i : Neighbours(options, references, reference)) {
+  for (const SubmapId& i : Neighbours(options, references, pair.reference)) {
     const SurfaceModel& i_surface = references.places->at(i).surface;
     const Rigid2 T_i_query =
-        RelativePose(references, i, reference) * T_reference_query;
-    for (const SubmapId& j : Neighbours(options, queries, query)) {
-      if (i == reference && j == query) continue;
-      if (min_index_gap && i.trajectory == j.trajectory &&
-          std::abs(i.index - j.index) < *min_index_gap) {
+        RelativePose(references, i, pair.reference) * pair.T_reference_query;
+    for (const SubmapId& j : Neighbours(options, queries, pair.query)) {
+      if ((i == pair.reference && j == pair.query) ||
+          (min_index_gap && ShareScans(i, j, *min_index_gap))) {
         continue;
       }
-      const SurfaceModel& j_surface = queries.places->at(j).surface;
-      const Rigid2 predicted = T_i_query * RelativePose(queries, query, j);
-      if (OverlapArea(i_surface, j_surface, predicted) <
-          options.min_overlap_area) {
-        continue;
-      }
-      const std::optional<Registration> registration = RegisterSubmaps(
-          verification.registration, i_surface, j_surface, predicted);
-      if (!registration) continue;
-      const Rigid2& T_i_j = registration->T_reference_query;
-      if (OverlapArea(i_surface, j_surface, T_i_j) < options.min_overlap_area) {
-        continue;
-      }
-      ++neighbourhood.evidence.num_pairs;
-      Add(verification.agreement, i_surface, j_surface, T_i_j,
-          options.num_points, &neighbourhood.evidence);
-      Add(verification.agreement, j_surface, i_surface, T_i_j.Inverse(),
-          options.num_points, &neighbourhood.evidence);
-      neighbourhood.proposals.push_back({i, j, T_i_j});
+      const std::optional<Rigid2> T_i_j = AddPair(
+          options, verification, i_surface, queries.places->at(j).surface,
+          T_i_query * RelativePose(queries, pair.query, j),
+          &neighbourhood.evidence);
+      if (T_i_j) neighbourhood.proposals.push_back({i, j, *T_i_j});
     }
   }
   return neighbourhood;

@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the neighbours of two matched submaps say of the match. Twins (equal
-// rooms, repeating corridors) pass every test that looks at two submaps only;
-// what lies around them seldom is equal too. Local SLAM knows the poses of a
-// submap's neighbours, so that a match predicts one for every pair of a
-// neighbour of the reference and a neighbour of the query: registered from
-// there, their walls and free space agree, or contradict each other.
+// Neighbourhood evidence: what the neighbours of two matched submaps show.
+// Look-alike places (equal rooms, repeating corridors) pass every test of two
+// submaps alone, but their surroundings seldom are alike too. Local SLAM knows
+// the poses of a submap's neighbours, so a match predicts a pose for every pair
+// of a neighbour of the reference and a neighbour of the query. Registered from
+// there, their walls and free space agree or contradict each other.
 //
-// A prediction is also a hypothesis: it finds what a pair's own features did
-// not propose. No pose of the optimised map takes part, and a match is never
-// held against odometry itself, as local SLAM may have slipped in between.
+// A prediction is also a hypothesis: it finds poses that a pair's own features
+// did not propose. No pose of the optimised map takes part, and a match is
+// never held against odometry itself, as local SLAM may have slipped in
+// between.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_H_
@@ -21,15 +22,15 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/closure/consistency.h"
+#include "cartographer_sdf/grid/pair_pose.h"
+#include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/recognition/place.h"
 
 namespace cartographer_sdf {
 
 // The score of a match in its neighbourhood, log-odds of being right, is linear
 // in these, up to NeighbourhoodOptions::max_gain. Learned by logistic
-// regression, see scripts/learn_score.py and docs/design.md.
+// regression; see scripts/learn_score.py.
 struct NeighbourhoodWeights {
   double pair_score = 0.515;
   double log_contradiction = -5.57;
@@ -43,29 +44,29 @@ struct NeighbourhoodOptions {
   // half of their scans, every other one shares none.
   int num_steps = 2;
   int index_step = 2;
-  // Two neighbours that would see less in common are not asked [m^2].
+  // Neighbouring pairs that have observed less in common are skipped [m^2].
   double min_overlap_area = 15.;
   // Wall points of each neighbour.
   int num_points = 600;
-  // A match whose neighbours saw little in common is judged as if they had seen
-  // this much wall more [m] ...
+  // Prior: a match is scored as if its neighbourhood had shown this much wall
+  // more [m] ...
   double prior_wall_length_meters = 50.;
-  // ... of which this part contradicts.
+  // ... of which this fraction contradicts.
   double prior_contradiction_ratio = 0.05;
-  // Matches of a lower score of their own are hopeless, and not looked at.
+  // The neighbourhood of a match with a lower score of its own is not measured.
   double min_pair_score = -5.;
-  // A match of this score in its neighbourhood proposes poses to the pairs of
-  // neighbours, log-odds.
+  // A match of this score in its neighbourhood proposes poses to the
+  // neighbouring pairs, log-odds.
   double min_proposing_score = 0.;
   NeighbourhoodWeights weights;
-  // Neighbours raise the score of a pair by no more than this, log-odds: where
-  // its own walls speak against it, they are not enough.
+  // The neighbourhood raises the score of a pair by no more than this,
+  // log-odds: it does not make up for walls that disagree.
   double max_gain = 3.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodOptions& options);
 
-// Logarithm of the ratio of contradicting wall, in units of the prior's; zero
-// where nothing was seen, negative where neighbours agree.
+// Logarithm of the ratio of contradicting wall over that of the prior; zero
+// where nothing was observed, negative where neighbours agree.
 [[nodiscard]] double LogContradiction(const NeighbourhoodOptions& options,
                                       const NeighbourhoodEvidence& evidence);
 
@@ -81,36 +82,21 @@ NeighbourhoodTermNames();
                                         double pair_score,
                                         const NeighbourhoodEvidence& evidence);
 
-// Places of one map and where its local SLAM says that they are; every place
-// has a pose. Neither is owned.
-struct PlacesAlongTrajectories {
-  const std::map<SubmapId, Place>* places;
-  const std::map<SubmapId, OdometryPose>* odometry;
-};
-
-// A pose for a pair of submaps, by a match of neighbours.
-struct PoseProposal {
-  SubmapId reference;
-  SubmapId query;
-  Rigid2 T_reference_query;  // registered
-};
-
 struct Neighbourhood {
   NeighbourhoodEvidence evidence;
-  std::vector<PoseProposal> proposals;
+  // Registered poses of the neighbouring pairs.
+  std::vector<PairPose> proposals;
 };
 
-// `reference` and `query` are matched as T_reference_query. Pairs of neighbours
-// of one trajectory that are less than `min_index_gap` apart share scans and
-// are left out; where the maps are different ones, no two are. Takes as long as
-// verifying some ten poses.
-[[nodiscard]] Neighbourhood AskNeighbours(
+// `pair` is where the reference and query of two maps, or of one, are matched.
+// Pairs of neighbours that share scans (see ShareScans; no two do where
+// `min_index_gap` is empty, between different maps) are skipped. Takes as long
+// as verifying some ten poses.
+[[nodiscard]] Neighbourhood MeasureNeighbourhood(
     const NeighbourhoodOptions& options,
-    const VerificationOptions& verification,
-    const PlacesAlongTrajectories& references,
-    const PlacesAlongTrajectories& queries, std::optional<int> min_index_gap,
-    const SubmapId& reference, const SubmapId& query,
-    const Rigid2& T_reference_query);
+    const VerificationOptions& verification, const TrajectoryPlaces& references,
+    const TrajectoryPlaces& queries, std::optional<int> min_index_gap,
+    const PairPose& pair);
 
 }  // namespace cartographer_sdf
 

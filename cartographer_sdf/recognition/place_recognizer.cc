@@ -10,19 +10,6 @@
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
-namespace {
-
-bool IsBetter(const Match& a, const Match& b) {
-  const bool a_accepted = a.verdict == Verdict::kAccepted;
-  const bool b_accepted = b.verdict == Verdict::kAccepted;
-  if (a_accepted != b_accepted) return a_accepted;
-  if (a.closure.score != b.closure.score) {
-    return a.closure.score > b.closure.score;
-  }
-  return a.closure.reference < b.closure.reference;
-}
-
-}  // namespace
 
 PlaceRecognizer::PlaceRecognizer(const RetrievalOptions& retrieval,
                                  const MatchOptions& match)
@@ -42,21 +29,33 @@ bool PlaceRecognizer::Forget(const SubmapId& id) {
   return places_.erase(id) > 0;
 }
 
-std::vector<RetrievalCandidate> PlaceRecognizer::Retrieve(
+PlaceRecognizer::Recognition PlaceRecognizer::Recognize(
     const Place& query, const PlaceIndex::Predicate& is_excluded) const {
-  return index_.Query(query.features, is_excluded);
+  return MatchCandidates(query, index_.Query(query.features, is_excluded));
 }
 
-std::vector<Match> PlaceRecognizer::Recognize(
-    const Place& query, const PlaceIndex::Predicate& is_excluded) const {
-  std::vector<Match> matches;
-  for (const RetrievalCandidate& candidate : Retrieve(query, is_excluded)) {
+PlaceRecognizer::Recognition PlaceRecognizer::RecognizeAmongBest(
+    const Place& query, const int num_candidates,
+    const PlaceIndex::Predicate& is_excluded) const {
+  return MatchCandidates(
+      query, index_.QueryBest(query.features, num_candidates, is_excluded));
+}
+
+PlaceRecognizer::Recognition PlaceRecognizer::MatchCandidates(
+    const Place& query,
+    const std::vector<RetrievalCandidate>& candidates) const {
+  Recognition recognition;
+  recognition.num_candidates = candidates.size();
+  for (const RetrievalCandidate& candidate : candidates) {
     std::optional<Match> match =
         MatchPlaces(match_options_, places_.at(candidate.id), query);
-    if (match) matches.push_back(*std::move(match));
+    if (match) recognition.matches.push_back(*std::move(match));
   }
-  std::sort(matches.begin(), matches.end(), IsBetter);
-  return matches;
+  std::sort(recognition.matches.begin(), recognition.matches.end(),
+            [](const Match& a, const Match& b) {
+              return IsBeforeByIds(a.pair, b.pair);
+            });
+  return recognition;
 }
 
 }  // namespace cartographer_sdf

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The memory of places: have I been here, and where is it? The one class of the
-// core with a state worth the name.
+// The memory of places of a map that grows: have I been here, and where is it?
+// The one class of the core with a state worth the name.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_PLACE_RECOGNIZER_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_PLACE_RECOGNIZER_H_
@@ -10,9 +10,9 @@
 #include <map>
 #include <vector>
 
+#include "cartographer_sdf/matching/place_index.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/recognition/place.h"
-#include "cartographer_sdf/retrieval/place_index.h"
 
 namespace cartographer_sdf {
 
@@ -22,8 +22,8 @@ class PlaceRecognizer {
  public:
   PlaceRecognizer(const RetrievalOptions& retrieval, const MatchOptions& match);
 
-  // The id is new. For method kSdf the place knows its self-similarities
-  // (FindSelfSimilarities), if look-alikes are to be noticed.
+  // The id is new. For method kSdf the place knows its self-similar poses
+  // (FindSelfSimilarities), if rivals are to be noticed.
   void Remember(Place place);
   // Whether it was known.
   bool Forget(const SubmapId& id);
@@ -31,19 +31,27 @@ class PlaceRecognizer {
     return places_;
   }
 
-  // The remembered places that may show the query, best first; those that the
-  // predicate tells are left out. For callers who match on several threads.
-  [[nodiscard]] std::vector<RetrievalCandidate> Retrieve(
+  struct Recognition {
+    // One for each candidate that has a pose worth reporting, whatever its
+    // verdict; remembered places are the references. In the order of the ids.
+    std::vector<Match> matches;
+    size_t num_candidates = 0;
+  };
+  // Matches the query with the candidates of the index; skips ids for which
+  // `is_excluded` returns true. The query need not be remembered; where it is,
+  // it matches itself unless excluded.
+  [[nodiscard]] Recognition Recognize(
       const Place& query, const PlaceIndex::Predicate& is_excluded = {}) const;
-
-  // Matches of the query with what Retrieve proposes, remembered places as
-  // references: accepted ones first, then by score, then by id. Candidates
-  // without a pose worth reporting yield none. The query need not be
-  // remembered; where it is, it matches itself unless excluded.
-  [[nodiscard]] std::vector<Match> Recognize(
-      const Place& query, const PlaceIndex::Predicate& is_excluded = {}) const;
+  // The same with the best so many candidates, whatever their retrieval scores.
+  [[nodiscard]] Recognition RecognizeAmongBest(
+      const Place& query, int num_candidates,
+      const PlaceIndex::Predicate& is_excluded = {}) const;
 
  private:
+  [[nodiscard]] Recognition MatchCandidates(
+      const Place& query,
+      const std::vector<RetrievalCandidate>& candidates) const;
+
   const MatchOptions match_options_;
   PlaceIndex index_;
   std::map<SubmapId, Place> places_;

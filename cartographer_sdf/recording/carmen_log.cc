@@ -28,13 +28,14 @@ namespace {
 constexpr absl::string_view kScanKeyword = "FLASER";
 // x y theta, odometry_x odometry_y odometry_theta, time, host, time.
 constexpr int kNumFieldsAfterRanges = 9;
+constexpr int kNumOdometryFields = 4;  // with the time
 constexpr int kMaxBeams = 100000;
 // Lines of kMaxBeams ranges with a few digits each.
 constexpr size_t kMaxLineLength = size_t{1} << 21;
 // Of all scans together: 2 GB, two days of a laser of 180 beams at 10 Hz.
 constexpr size_t kMaxRanges = size_t{1} << 28;
 // No robot on earth is farther from where it started [m].
-constexpr double kMaxCoordinate = 1e7;
+constexpr double kMaxLogCoordinate = 1e7;
 // No robot with a laser drives farther between two scans [m]; Cartographer
 // would make a submap of the size of the jump.
 constexpr double kMaxStep = 20.;
@@ -148,8 +149,30 @@ absl::Status ParseRanges(const LineReader& reader,
     }
     if (range < 0.) return reader.Error("a range is negative");
     // More is no return either.
-    ranges->push_back(std::min(range, kMaxCoordinate));
+    ranges->push_back(std::min(range, kMaxLogCoordinate));
   }
+  return absl::OkStatus();
+}
+
+// Of odometry's pose and the time.
+absl::Status ParseOdometry(const LineReader& reader,
+                           const std::vector<absl::string_view>& fields,
+                           LaserScan* const scan) {
+  std::array<double, kNumOdometryFields> numbers;
+  for (int k = 0; k < kNumOdometryFields; ++k) {
+    if (absl::Status status = ParseNumber(reader, fields[k], &numbers[k]);
+        !status.ok()) {
+      return status;
+    }
+  }
+  const auto& [x, y, theta, time] = numbers;
+  if (std::max({std::abs(x), std::abs(y), std::abs(theta)}) >
+      kMaxLogCoordinate) {
+    return reader.Error("the odometry is off this world");
+  }
+  if (time < 0. || time > kMaxTime) return reader.Error("the time is no time");
+  scan->T_odometry_robot = Rigid2(x, y, theta);
+  scan->time = time;
   return absl::OkStatus();
 }
 
@@ -176,22 +199,12 @@ absl::StatusOr<LaserScan> ParseScan(const LineReader& reader,
       !status.ok()) {
     return status;
   }
-  // Odometry's pose and the time; the laser's pose comes before.
-  std::array<double, 4> numbers;
-  for (int k = 0; k < 4; ++k) {
-    if (absl::Status status =
-            ParseNumber(reader, *(pose_begin + 3 + k), &numbers[k]);
-        !status.ok()) {
-      return status;
-    }
+  // The laser's pose comes before odometry's.
+  if (absl::Status status = ParseOdometry(
+          reader, {pose_begin + 3, pose_begin + 3 + kNumOdometryFields}, &scan);
+      !status.ok()) {
+    return status;
   }
-  const auto& [x, y, theta, time] = numbers;
-  if (std::max({std::abs(x), std::abs(y), std::abs(theta)}) > kMaxCoordinate) {
-    return reader.Error("the odometry is off this world");
-  }
-  if (time < 0. || time > kMaxTime) return reader.Error("the time is no time");
-  scan.T_odometry_robot = Rigid2(x, y, theta);
-  scan.time = time;
   return scan;
 }
 
@@ -260,6 +273,34 @@ absl::Status CheckAgainstLast(const LineReader& reader,
   return absl::OkStatus();
 }
 
+// The keyword as a word of its own.
+bool IsScan(const std::string& line) {
+  return absl::StartsWith(line, kScanKeyword) &&
+         (line.size() == kScanKeyword.size() ||
+          absl::ascii_isspace(
+              static_cast<unsigned char>(line[kScanKeyword.size()])));
+}
+
+absl::StatusOr<std::vector<LaserScan>> ReadScans(const std::string& path) {
+  absl::StatusOr<LineReader> reader = LineReader::Open(path);
+  if (!reader.ok()) return reader.status();
+  std::vector<LaserScan> scans;
+  std::string line;
+  while (true) {
+    const absl::StatusOr<bool> read = reader->Read(&line);
+    if (!read.ok()) return read.status();
+    if (!*read) return scans;
+    if (!IsScan(line)) continue;
+    absl::StatusOr<LaserScan> scan = ParseScan(*reader, line);
+    if (!scan.ok()) return scan.status();
+    if (absl::Status status = CheckAgainstLast(*reader, scans, *scan);
+        !status.ok()) {
+      return status;
+    }
+    scans.push_back(*std::move(scan));
+  }
+}
+
 }  // namespace
 
 std::string Validate(const CarmenLogOptions& options) {
@@ -285,34 +326,15 @@ absl::StatusOr<Recording> ReadCarmenLog(const std::string& path,
   if (const std::string problem = Validate(options); !problem.empty()) {
     return absl::InvalidArgumentError(problem);
   }
-  absl::StatusOr<LineReader> reader = LineReader::Open(path);
-  if (!reader.ok()) return reader.status();
-  Recording recording;
-  std::string line;
-  while (true) {
-    const absl::StatusOr<bool> read = reader->Read(&line);
-    if (!read.ok()) return read.status();
-    if (!*read) break;
-    // FLASER as a word of its own.
-    if (!absl::StartsWith(line, kScanKeyword) ||
-        (line.size() > kScanKeyword.size() &&
-         !absl::ascii_isspace(
-             static_cast<unsigned char>(line[kScanKeyword.size()])))) {
-      continue;
-    }
-    absl::StatusOr<LaserScan> scan = ParseScan(*reader, line);
-    if (!scan.ok()) return scan.status();
-    if (absl::Status status = CheckAgainstLast(*reader, recording.scans, *scan);
-        !status.ok()) {
-      return status;
-    }
-    recording.scans.push_back(*std::move(scan));
-  }
-  if (recording.scans.empty()) {
+  absl::StatusOr<std::vector<LaserScan>> scans = ReadScans(path);
+  if (!scans.ok()) return scans.status();
+  if (scans->empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat(path, " has no line that begins with ", kScanKeyword,
                      ", so it is no CARMEN log or has no laser"));
   }
+  Recording recording;
+  recording.scans = *std::move(scans);
   const auto num_beams =
       static_cast<int>(recording.scans.front().ranges.size());
   const double field_of_view =

@@ -16,17 +16,15 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr Color kWhite{1., 1., 1.};
-constexpr Color kBlack{0., 0., 0.};
 constexpr Color kShade{0.45, 0.5, 0.58};
-constexpr Color kUnknown{0.8, 0.8, 0.8};
+constexpr Color kUnknownFace{0.8, 0.8, 0.8};
 // The view of the surface: turned, and tilted towards the viewer.
 constexpr double kAzimuth = 30. * M_PI / 180.;
 constexpr double kElevation = 38. * M_PI / 180.;
 // Heights are drawn this much larger than lengths, so that rooms stand out.
 constexpr double kHeightScale = 1.6;
 // The distance at which the colours saturate [m].
-constexpr double kFullColorMeters = 2.;
+constexpr double kSurfaceColorMeters = 2.;
 
 Color MarkColor(const KeypointMark mark) {
   switch (mark) {
@@ -42,7 +40,7 @@ Color MarkColor(const KeypointMark mark) {
 
 // From blue on walls to yellow far from them.
 Color HeightColor(const double distance) {
-  const double f = std::clamp(distance / kFullColorMeters, 0., 1.);
+  const double f = std::clamp(distance / kSurfaceColorMeters, 0., 1.);
   constexpr Color kLow{0.25, 0.25, 0.62};
   constexpr Color kMiddle{0.25, 0.7, 0.72};
   constexpr Color kHigh{1., 0.93, 0.45};
@@ -162,17 +160,155 @@ double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
   return 0.6 + 0.4 * std::max(0., normal.dot(light));
 }
 
+// Draws one column of pixels from front to back: what is lower than what was
+// drawn before it is hidden behind it.
+void DrawSurfaceColumn(const DistanceField& field, const SurfaceSheet& sheet,
+                       const int x, Picture* const picture) {
+  const double step =
+      std::min(0.5 * field.geometry.resolution, 0.5 / sheet.pixels_per_meter);
+  const double right =
+      sheet.seen.min().x() + (x + 0.5) / sheet.pixels_per_meter;
+  int horizon = picture->height();
+  bool follows_observed = false;
+  for (double depth = sheet.turned.min().y(); depth <= sheet.turned.max().y();
+       depth += step) {
+    const Eigen::Vector2d p_grid = sheet.view.ToGrid({right, depth});
+    const std::optional<double> distance = ObservedDistance(field, p_grid);
+    if (!distance || !sheet.plane.contains(p_grid)) {
+      follows_observed = false;
+      continue;
+    }
+    const int row = static_cast<int>(std::floor(
+        sheet.ToPixels(right, ObliqueView::Height(depth, *distance)).y()));
+    // What rises is drawn down to the horizon, but is no cliff where an
+    // observed part begins.
+    const int lowest = follows_observed ? horizon : std::min(horizon, row + 1);
+    follows_observed = true;
+    if (row >= horizon) continue;
+    const Color color =
+        Mix(kBlack, HeightColor(*distance), Brightness(field, p_grid));
+    for (int y = std::max(0, row); y < lowest; ++y) {
+      picture->BlendPixel(x, y, color);
+    }
+    horizon = row;
+  }
+}
+
+void DrawSurfaceKeypoints(const DistanceField& field, const SurfaceSheet& sheet,
+                          const std::vector<MarkedKeypoint>& keypoints,
+                          Picture* const picture) {
+  const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
+  for (const MarkedKeypoint& keypoint : keypoints) {
+    const Eigen::Vector2d p_grid = T_grid_submap * keypoint.position;
+    const std::optional<FieldSample> sample = SampleField(field, p_grid);
+    if (!sample || !sheet.plane.contains(p_grid)) continue;
+    const Eigen::Vector2d turned = sheet.view.Turned(p_grid);
+    picture->DrawCircle(
+        sheet.ToPixels(turned.x(),
+                       ObliqueView::Height(turned.y(), sample->distance)),
+        3.5, MarkColor(keypoint.mark), kBlack);
+  }
+}
+
+// The window of a descriptor, in the grid frame.
+struct FeatureWindow {
+  Eigen::Vector2d centre;
+  double radius;  // [m]
+  PixelFrame frame;
+};
+
+Eigen::Vector2d AtAngle(const FeatureWindow& window, const double angle) {
+  return window.centre +
+         window.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+}
+
+void DrawWindowField(const DistanceField& field, const PixelFrame& frame,
+                     Picture* const picture) {
+  constexpr Color kWall{0.55, 0.3, 0.1};
+  constexpr Color kFar{0.1, 0.35, 0.7};
+  for (int y = 0; y < picture->height(); ++y) {
+    for (int x = 0; x < picture->width(); ++x) {
+      const std::optional<double> distance =
+          ObservedDistance(field, frame.CentreOf(x, y));
+      if (!distance) continue;
+      const double fraction =
+          std::sqrt(std::clamp(*distance / kSurfaceColorMeters, 0., 1.));
+      picture->BlendPixel(
+          x, y, *distance <= 0. ? kWall : Mix(kWhite, kFar, 0.8 * fraction));
+    }
+  }
+}
+
+// An arrow without a head, but with a dot at its foot.
+void DrawGradient(const Eigen::Vector2d& foot, const Eigen::Vector2d& tip,
+                  const PixelFrame& frame, Picture* const picture) {
+  constexpr Color kDark{0.1, 0.1, 0.1};
+  picture->DrawPolyline({frame.ToPixels(foot), frame.ToPixels(tip)}, 1.5,
+                        kDark);
+  picture->DrawCircle(frame.ToPixels(foot), 1.3, kDark, kDark);
+}
+
+// The gradients at every third cell in the window, as long as they weigh.
+// `sigma` is that of the weights [m].
+void DrawWeighedGradients(const CellGeometry& geometry,
+                          const Eigen::ArrayXXf& smoothed,
+                          const FeatureWindow& window, const double sigma,
+                          Picture* const picture) {
+  constexpr int kStride = 3;
+  const Eigen::Array2i middle =
+      geometry.GridToCells(window.centre).array().round().cast<int>();
+  const int cells = static_cast<int>(window.radius / geometry.resolution);
+  for (int dj = -cells; dj <= cells; ++dj) {
+    for (int di = -cells; di <= cells; ++di) {
+      const int i = middle.x() + di;
+      const int j = middle.y() + dj;
+      if (di % kStride != 0 || dj % kStride != 0 || i < 1 || j < 1 ||
+          i + 1 >= smoothed.rows() || j + 1 >= smoothed.cols()) {
+        continue;
+      }
+      const Eigen::Vector2d p_grid =
+          geometry.CellsToGrid(Eigen::Vector2d(i, j));
+      const double squared = (p_grid - window.centre).squaredNorm();
+      if (squared > window.radius * window.radius) continue;
+      const Eigen::Vector2d gradient(
+          0.5f * (smoothed(i + 1, j) - smoothed(i - 1, j)),
+          0.5f * (smoothed(i, j + 1) - smoothed(i, j - 1)));
+      const double weight = std::exp(-0.5 * squared / (sigma * sigma));
+      DrawGradient(p_grid,
+                   p_grid + kStride * geometry.resolution * weight * gradient,
+                   window.frame, picture);
+    }
+  }
+}
+
+void DrawRim(const FeatureWindow& window, Picture* const picture) {
+  std::vector<Eigen::Vector2d> circle;
+  for (int k = 0; k <= 72; ++k) {
+    circle.push_back(window.frame.ToPixels(AtAngle(window, k * M_PI / 36.)));
+  }
+  picture->DrawPolyline(circle, 2., kBlack);
+}
+
+void DrawDirection(const FeatureWindow& window, const double orientation,
+                   Picture* const picture) {
+  picture->DrawPolyline({window.frame.ToPixels(window.centre),
+                         window.frame.ToPixels(AtAngle(window, orientation))},
+                        3., Color{0.85, 0.1, 0.1});
+}
+
+KeypointMark MarkOf(const KeypointKind kind) {
+  return kind == KeypointKind::kMaximum  ? KeypointMark::kMaximum
+         : kind == KeypointKind::kSaddle ? KeypointMark::kSaddle
+                                         : KeypointMark::kMinimum;
+}
+
 }  // namespace
 
 std::vector<MarkedKeypoint> MarkKeypoints(const FeatureSet& features) {
   std::vector<MarkedKeypoint> marked;
   for (const Feature& feature : features.features) {
-    const KeypointKind kind = feature.keypoint.kind;
-    marked.push_back({feature.keypoint.position, kind == KeypointKind::kMaximum
-                                                     ? KeypointMark::kMaximum
-                                                 : kind == KeypointKind::kSaddle
-                                                     ? KeypointMark::kSaddle
-                                                     : KeypointMark::kMinimum});
+    marked.push_back(
+        {feature.keypoint.position, MarkOf(feature.keypoint.kind)});
   }
   return marked;
 }
@@ -186,7 +322,7 @@ Picture DrawClearanceMask(const DistanceField& field,
   Picture picture(
       NumPixels(bounds.sizes().x(), frame.pixels_per_meter, max_pixels),
       NumPixels(bounds.sizes().y(), frame.pixels_per_meter, max_pixels),
-      kUnknown);
+      kUnknownFace);
   for (int y = 0; y < picture.height(); ++y) {
     for (int x = 0; x < picture.width(); ++x) {
       const std::optional<double> distance =
@@ -210,50 +346,10 @@ Picture DrawFieldSurface(const DistanceField& field,
       NumPixels(sheet.seen.sizes().x(), sheet.pixels_per_meter, max_pixels),
       NumPixels(sheet.seen.sizes().y(), sheet.pixels_per_meter, max_pixels),
       kWhite);
-  // Each column of pixels from front to back: what is lower than what was
-  // drawn before it is hidden behind it.
-  const double step =
-      std::min(0.5 * field.geometry.resolution, 0.5 / sheet.pixels_per_meter);
   for (int x = 0; x < picture.width(); ++x) {
-    const double right =
-        sheet.seen.min().x() + (x + 0.5) / sheet.pixels_per_meter;
-    int horizon = picture.height();
-    bool follows_observed = false;
-    for (double depth = sheet.turned.min().y(); depth <= sheet.turned.max().y();
-         depth += step) {
-      const Eigen::Vector2d p_grid = sheet.view.ToGrid({right, depth});
-      const std::optional<double> distance = ObservedDistance(field, p_grid);
-      if (!distance || !sheet.plane.contains(p_grid)) {
-        follows_observed = false;
-        continue;
-      }
-      const int row = static_cast<int>(std::floor(
-          sheet.ToPixels(right, ObliqueView::Height(depth, *distance)).y()));
-      // What rises is drawn down to the horizon, but is no cliff where an
-      // observed part begins.
-      const int lowest =
-          follows_observed ? horizon : std::min(horizon, row + 1);
-      follows_observed = true;
-      if (row >= horizon) continue;
-      const Color color =
-          Mix(kBlack, HeightColor(*distance), Brightness(field, p_grid));
-      for (int y = std::max(0, row); y < lowest; ++y) {
-        picture.BlendPixel(x, y, color);
-      }
-      horizon = row;
-    }
+    DrawSurfaceColumn(field, sheet, x, &picture);
   }
-  const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
-  for (const MarkedKeypoint& keypoint : keypoints) {
-    const Eigen::Vector2d p_grid = T_grid_submap * keypoint.position;
-    const std::optional<FieldSample> sample = SampleField(field, p_grid);
-    if (!sample || !sheet.plane.contains(p_grid)) continue;
-    const Eigen::Vector2d turned = sheet.view.Turned(p_grid);
-    picture.DrawCircle(
-        sheet.ToPixels(turned.x(),
-                       ObliqueView::Height(turned.y(), sample->distance)),
-        3.5, MarkColor(keypoint.mark), kBlack);
-  }
+  DrawSurfaceKeypoints(field, sheet, keypoints, &picture);
   return picture;
 }
 
@@ -266,71 +362,21 @@ Picture DrawFeatureWindow(const DescriptorOptions& options,
   CHECK_EQ(smoothed.cols(), field.distance.cols());
   const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
   const Eigen::Vector2d centre = T_grid_submap * feature.keypoint.position;
-  const double radius = options.radius_meters;
-  const double reach = 1.15 * radius;
-  const PixelFrame frame{max_pixels / (2. * reach),
-                         centre + reach * Eigen::Vector2d(-1., 1.)};
-  Picture picture(max_pixels, max_pixels, kUnknown);
-  for (int y = 0; y < max_pixels; ++y) {
-    for (int x = 0; x < max_pixels; ++x) {
-      const std::optional<double> distance =
-          ObservedDistance(field, frame.CentreOf(x, y));
-      if (!distance) continue;
-      picture.BlendPixel(
-          x, y,
-          *distance <= 0. ? Color{0.55, 0.3, 0.1}
-                          : Mix(kWhite, Color{0.1, 0.35, 0.7},
-                                0.8 * std::sqrt(std::min(
-                                          1., *distance / kFullColorMeters))));
-    }
-  }
-  const double resolution = field.geometry.resolution;
-  const double sigma = options.gaussian_sigma_ratio * radius;
-  constexpr int kStride = 3;
-  const Eigen::Array2i middle =
-      field.geometry.GridToCells(centre).array().round().cast<int>();
-  const int cells = static_cast<int>(radius / resolution);
-  for (int dj = -cells; dj <= cells; ++dj) {
-    for (int di = -cells; di <= cells; ++di) {
-      const int i = middle.x() + di;
-      const int j = middle.y() + dj;
-      if (di % kStride != 0 || dj % kStride != 0 || i < 1 || j < 1 ||
-          i + 1 >= smoothed.rows() || j + 1 >= smoothed.cols()) {
-        continue;
-      }
-      const Eigen::Vector2d p_grid =
-          field.geometry.CellsToGrid(Eigen::Vector2d(i, j));
-      const double squared = (p_grid - centre).squaredNorm();
-      if (squared > radius * radius) continue;
-      const Eigen::Vector2d gradient(
-          0.5f * (smoothed(i + 1, j) - smoothed(i - 1, j)),
-          0.5f * (smoothed(i, j + 1) - smoothed(i, j - 1)));
-      const double weight = std::exp(-0.5 * squared / (sigma * sigma));
-      const Eigen::Vector2d tip =
-          p_grid + kStride * resolution * weight * gradient;
-      picture.DrawPolyline({frame.ToPixels(p_grid), frame.ToPixels(tip)}, 1.5,
-                           Color{0.1, 0.1, 0.1});
-      picture.DrawCircle(frame.ToPixels(p_grid), 1.3, Color{0.1, 0.1, 0.1},
-                         Color{0.1, 0.1, 0.1});
-    }
-  }
-  std::vector<Eigen::Vector2d> circle;
-  for (int k = 0; k <= 72; ++k) {
-    const double angle = k * M_PI / 36.;
-    circle.push_back(frame.ToPixels(
-        centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle))));
-  }
-  picture.DrawPolyline(circle, 2., kBlack);
-  const double orientation = feature.orientation + T_grid_submap.rotation();
-  picture.DrawPolyline(
-      {frame.ToPixels(centre),
-       frame.ToPixels(centre +
-                      radius * Eigen::Vector2d(std::cos(orientation),
-                                               std::sin(orientation)))},
-      3., Color{0.85, 0.1, 0.1});
-  picture.DrawCircle(frame.ToPixels(centre), 4.,
-                     MarkColor(MarkKeypoints({{feature}, {}}).front().mark),
-                     kBlack);
+  const double reach = 1.15 * options.radius_meters;
+  const FeatureWindow window{
+      centre,
+      options.radius_meters,
+      {max_pixels / (2. * reach), centre + reach * Eigen::Vector2d(-1., 1.)}};
+  Picture picture(max_pixels, max_pixels, kUnknownFace);
+  DrawWindowField(field, window.frame, &picture);
+  DrawWeighedGradients(field.geometry, smoothed, window,
+                       options.gaussian_sigma_ratio * options.radius_meters,
+                       &picture);
+  DrawRim(window, &picture);
+  DrawDirection(window, feature.orientation + T_grid_submap.rotation(),
+                &picture);
+  picture.DrawCircle(window.frame.ToPixels(centre), 4.,
+                     MarkColor(MarkOf(feature.keypoint.kind)), kBlack);
   return picture;
 }
 

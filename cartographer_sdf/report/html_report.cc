@@ -47,7 +47,7 @@ td.text, th.text { text-align: left; white-space: normal; }
 .wide { overflow-x: auto; }
 .wide table { width: 100%; }
 .accepted { color: var(--good); font-weight: 600; }
-.withdrawn { color: var(--bad); font-weight: 600; }
+.refused { color: var(--bad); font-weight: 600; }
 .columns { display: grid; gap: 1.2rem;
   grid-template-columns: repeat(auto-fit, minmax(22rem, 1fr)); }
 figure { margin: 0; }
@@ -124,17 +124,17 @@ std::string IdText(const SubmapId& id) {
 
 std::string RenderClosure(const ReportedClosure& reported,
                           const bool with_picture) {
-  const LoopClosure& closure = reported.closure;
-  const ClosureEvidence& evidence = closure.evidence;
-  const Eigen::Vector2d& translation = closure.T_reference_query.translation();
+  const PairPose& pair = reported.match.pair;
+  const PairEvidence& evidence = reported.match.evidence;
+  const Eigen::Vector2d& translation = pair.T_reference_query.translation();
   std::string html = absl::StrFormat(
       "<tr><td>%s</td><td>%s</td><td class=\"text\"><span class=\"%s\">%s"
       "</span>",
-      IdText(closure.reference), IdText(closure.query),
-      reported.accepted ? "accepted" : "withdrawn",
+      IdText(pair.reference), IdText(pair.query),
+      reported.accepted ? "accepted" : "refused",
       !reported.status.empty() ? EscapeMarkup(reported.status)
       : reported.accepted      ? "accepted"
-                               : "withdrawn");
+                               : "refused");
   if (!reported.reason.empty()) {
     absl::StrAppend(&html, "<br/>", EscapeMarkup(reported.reason));
   }
@@ -143,16 +143,43 @@ std::string RenderClosure(const ReportedClosure& reported,
       "</td><td>%.2f</td><td>%d</td><td>%.1f</td><td>%.0f %%</td>"
       "<td>%.1f %%</td><td>%.1f %%</td><td>%.3f</td><td>%.2f</td><td>%.2f</td>"
       "<td>%.1f</td><td>",
-      closure.score, evidence.inliers, evidence.overlap_area,
-      100. * evidence.overlap, 100. * evidence.hit_ratio,
-      100. * evidence.contradiction_ratio, evidence.residual, translation.x(),
-      translation.y(), closure.T_reference_query.rotation() * 180. / M_PI);
+      pair.score, reported.match.inliers.size(), evidence.overlap_area,
+      100. * evidence.overlap, 100. * evidence.HitRatio(),
+      100. * evidence.ContradictionRatio(), evidence.WallDistance(),
+      translation.x(), translation.y(),
+      pair.T_reference_query.rotation() * 180. / M_PI);
   if (with_picture) {
     html +=
-        Zoomable(reported.png, absl::StrCat("submap ", IdText(closure.query),
-                                            " on ", IdText(closure.reference)));
+        Zoomable(reported.png, absl::StrCat("submap ", IdText(pair.query),
+                                            " on ", IdText(pair.reference)));
   }
   return html + "</td></tr>\n";
+}
+
+constexpr char kClosureTableHead[] =
+    "<div class=\"wide\"><table>\n<thead><tr><th>reference</th>"
+    "<th>query</th><th class=\"text\">status</th><th>score</th>"
+    "<th>inliers</th><th>overlap [m&#178;]</th><th>overlap</th><th>hits</th>"
+    "<th>contradictions</th><th>wall distance [m]</th><th>x [m]</th>"
+    "<th>y [m]</th><th>yaw [&#176;]</th><th>matched pair</th></tr></thead>\n"
+    "<tbody>\n";
+
+std::string RenderPictureLegend(const int num_pictures,
+                                const int num_left_out) {
+  std::string html;
+  if (num_pictures > 0) {
+    html +=
+        "<p class=\"legend\">Pictures: walls of the reference "
+        "<span class=\"key\" style=\"background:#0d2673\"></span>blue, of the "
+        "query <span class=\"key\" style=\"background:#d91a1a\"></span>red, of "
+        "either in the free space of the other "
+        "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
+  }
+  if (num_left_out > 0) {
+    absl::StrAppend(&html, "<p class=\"legend\">", num_left_out,
+                    " pictures are left out to keep this page small.</p>\n");
+  }
+  return html;
 }
 
 std::string RenderClosures(const std::string& heading,
@@ -176,29 +203,10 @@ std::string RenderClosures(const std::string& heading,
     }
     rows += RenderClosure(closure, shows_picture);
   }
-  std::string html;
-  if (num_pictures > 0) {
-    html +=
-        "<p class=\"legend\">Pictures: walls of the reference "
-        "<span class=\"key\" style=\"background:#0d2673\"></span>blue, of the "
-        "query <span class=\"key\" style=\"background:#d91a1a\"></span>red, of "
-        "either in the free space of the other "
-        "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
-  }
-  if (num_left_out > 0) {
-    absl::StrAppend(&html, "<p class=\"legend\">", num_left_out,
-                    " pictures are left out to keep this page small.</p>\n");
-  }
-  absl::StrAppend(
-      &html,
-      "<div class=\"wide\"><table>\n<thead><tr><th>reference</th>"
-      "<th>query</th><th class=\"text\">status</th><th>score</th>"
-      "<th>inliers</th><th>overlap [m&#178;]</th><th>overlap</th><th>hits</th>"
-      "<th>contradictions</th><th>residual [m]</th><th>x [m]</th>"
-      "<th>y [m]</th><th>yaw [&#176;]</th><th>matched pair</th></tr></thead>\n"
-      "<tbody>\n",
-      rows, "</tbody></table></div>\n");
-  return Section(heading, html);
+  return Section(
+      heading,
+      absl::StrCat(RenderPictureLegend(num_pictures, num_left_out),
+                   kClosureTableHead, rows, "</tbody></table></div>\n"));
 }
 
 std::string RenderHistograms(const std::vector<HistogramPlot>& histograms) {
@@ -210,23 +218,24 @@ std::string RenderHistograms(const std::vector<HistogramPlot>& histograms) {
   return Section("Residuals", html + "</div>\n");
 }
 
-std::string RenderStages(const std::vector<StageTime>& stages) {
+std::string RenderStages(
+    const std::vector<std::pair<std::string, double>>& stages) {
   if (stages.empty()) return "";
   double longest = 0.;
   double sum = 0.;
-  for (const StageTime& stage : stages) {
-    longest = std::max(longest, stage.seconds);
-    sum += stage.seconds;
+  for (const auto& [name, seconds] : stages) {
+    longest = std::max(longest, seconds);
+    sum += seconds;
   }
   std::string html = "<div class=\"stages\"><table>\n";
-  for (const StageTime& stage : stages) {
+  for (const auto& [name, seconds] : stages) {
     const double percent =
-        longest > 0. ? std::max(0., 100. * stage.seconds / longest) : 0.;
+        longest > 0. ? std::max(0., 100. * seconds / longest) : 0.;
     absl::StrAppendFormat(
         &html,
         "<tr><th scope=\"row\" class=\"text\">%s</th><td>%.2f s</td>"
         "<td><div class=\"bar\" style=\"width:%.1f%%\"></div></td></tr>\n",
-        EscapeMarkup(stage.stage), stage.seconds, percent);
+        EscapeMarkup(name), seconds, percent);
   }
   absl::StrAppendFormat(&html,
                         "<tr><th scope=\"row\" class=\"text\">together</th>"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "cartographer_sdf/closure/loop_closure.h"
+#include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/report/report_options.h"
 #include "cartographer_sdf/report/svg_plot.h"
 
@@ -25,19 +25,14 @@ struct ReportedPicture {
 };
 
 struct ReportedClosure {
-  LoopClosure closure;
-  // Went into the pose graph. Else it was withdrawn, by `reason`.
+  Match match;
+  // Whether it went into the pose graph; if not, `reason` says why.
   bool accepted = false;
-  // In place of "accepted" or "withdrawn", where that is not the word.
+  // In place of "accepted" or "refused", where that is not the word.
   std::string status;
   std::string reason;
   // Of the matched pair (DrawMatchedPair); empty where it was not drawn.
   std::string png;
-};
-
-struct StageTime {
-  std::string stage;
-  double seconds = 0.;
 };
 
 // What is empty is left out of the page.
@@ -52,7 +47,8 @@ struct ReportContent {
   std::string closures_heading = "Closures";
   std::vector<ReportedClosure> closures;
   std::vector<HistogramPlot> histograms;
-  std::vector<StageTime> stages;
+  // Stages and the seconds that they took.
+  std::vector<std::pair<std::string, double>> stages;
   // The options in force, as Lua.
   std::string options;
 };

@@ -16,7 +16,7 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr Color kUnknown{0.5, 0.5, 0.5};
+constexpr Color kUnobserved{0.5, 0.5, 0.5};
 constexpr Color kInk{0.15, 0.15, 0.2};
 // Along each axis: with pixels at least as large as a cell, samples are at most
 // half a pixel apart, and no pixel inside of a turned grid stays empty.
@@ -33,10 +33,10 @@ constexpr Color kConflict{0.9, 0.1, 0.1};
 constexpr double kSureExcess = 0.15;
 
 // More than a quarter of the way around the earth is no map.
-constexpr double kMaxCoordinate = 1e7;
+constexpr double kMaxDrawnCoordinate = 1e7;
 
 bool IsDrawable(const Eigen::Vector2d& position) {
-  return (position.array().abs() < kMaxCoordinate).all();
+  return (position.array().abs() < kMaxDrawnCoordinate).all();
 }
 
 bool IsDrawable(const Rigid2& pose) {
@@ -145,7 +145,7 @@ std::optional<double> MapPainter::ExcessAt(const int x, const int y) const {
 }
 
 Picture MapPainter::Paint() const {
-  Picture picture(width_, height_, kUnknown);
+  Picture picture(width_, height_, kUnobserved);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const std::optional<double> excess = ExcessAt(x, y);
@@ -164,7 +164,7 @@ Picture PaintOverlaid(const std::vector<const MapPainter*>& maps) {
   for (const MapPainter* const map : maps) {
     CHECK(map->width() == width && map->height() == height);
   }
-  Picture picture(width, height, kUnknown);
+  Picture picture(width, height, kUnobserved);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       bool is_known = false, is_free = false, is_wall = false;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Color kReference{0.05, 0.25, 0.75};
 constexpr Color kQuery{0.8, 0.08, 0.08};
-constexpr double kFullColorMeters = 3.;
+constexpr double kMatchColorMeters = 3.;
 constexpr double kPaleness = 0.55;
 
 Color WithAlpha(Color color, const double alpha) {
@@ -39,7 +39,8 @@ void TintSubmap(const ShownSubmap& submap, const PixelFrame& frame,
         picture->BlendPixel(x, y, color);
         continue;
       }
-      const double depth = std::sqrt(std::min(1., distance / kFullColorMeters));
+      const double depth =
+          std::sqrt(std::min(1., distance / kMatchColorMeters));
       picture->BlendPixel(x, y, WithAlpha(color, 0.12 + 0.4 * depth));
     }
   }

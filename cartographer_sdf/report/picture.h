@@ -25,6 +25,9 @@ struct Color {
   double alpha = 1.;
 };
 
+constexpr Color kWhite{1., 1., 1.};
+constexpr Color kBlack{0., 0., 0.};
+
 [[nodiscard]] Color Mix(const Color& a, const Color& b, double fraction_of_b);
 
 // Well distinguishable colours, also by the colour-blind; they repeat.

@@ -20,6 +20,13 @@ struct ReportOptions {
 // A sentence that begins with the offending option, or nothing.
 [[nodiscard]] std::string Validate(const ReportOptions& options);
 
+// What every report is told beside its content.
+struct ReportRequest {
+  std::string directory;  // index.html goes there
+  ReportOptions options;
+  std::string options_text;  // all options in force, as Lua
+};
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_REPORT_REPORT_OPTIONS_H_

@@ -15,7 +15,6 @@ namespace {
 
 constexpr Color kUnknown{0.78, 0.78, 0.78};
 constexpr Color kHatch{0.66, 0.66, 0.66};
-constexpr Color kWhite{1., 1., 1.};
 constexpr Color kReferenceWall{0.05, 0.15, 0.45};
 constexpr Color kQueryWall{0.85, 0.1, 0.1};
 constexpr Color kContradiction{1., 0.6, 0.};
@@ -138,6 +137,77 @@ Color DistanceColor(const double distance) {
   return Mix(kWhite, distance < 0. ? kInside : kFar, fraction);
 }
 
+// How strongly a contour between two neighbouring pixels is drawn; 0 where
+// there is none.
+double ContourStrength(const double here, const double next) {
+  const double level = std::floor(here / kContourIntervalMeters);
+  const double other = std::floor(next / kContourIntervalMeters);
+  if (other == level) return 0.;
+  const bool is_wall = std::max(level, other) == 0.;
+  return is_wall ? 1. : 0.35;
+}
+
+void DrawKeypoints(const std::vector<MarkedKeypoint>& keypoints,
+                   const Rigid2& T_sheet_submap, Sheet* const sheet) {
+  for (const MarkedKeypoint& keypoint : keypoints) {
+    const Color fill =
+        keypoint.mark == KeypointMark::kMaximum  ? Color{0.9, 0.1, 0.1}
+        : keypoint.mark == KeypointMark::kSaddle ? Color{0.1, 0.7, 0.2}
+                                                 : Color{1., 0.9, 0.1};
+    sheet->picture.DrawCircle(
+        sheet->frame.ToPixels(T_sheet_submap * keypoint.position), 3.5, fill,
+        kBlack);
+  }
+}
+
+// Where either submap is free space. The sheet is in the reference's grid.
+void DrawFreeSpace(const OccupancyGrid& reference, const OccupancyGrid& query,
+                   const Rigid2& T_query_sheet, Sheet* const sheet) {
+  constexpr Color kReferenceOnly{0.82, 0.88, 0.97};
+  constexpr Color kQueryOnly{0.98, 0.87, 0.85};
+  for (int y = 0; y < sheet->picture.height(); ++y) {
+    for (int x = 0; x < sheet->picture.width(); ++x) {
+      const Eigen::Vector2d p_sheet = sheet->frame.CentreOf(x, y);
+      const bool in_reference = IsFreeAt(reference, p_sheet);
+      const bool in_query = IsFreeAt(query, T_query_sheet * p_sheet);
+      if (!in_reference && !in_query) continue;
+      sheet->picture.BlendPixel(x, y,
+                                !in_query       ? kReferenceOnly
+                                : !in_reference ? kQueryOnly
+                                                : kWhite);
+    }
+  }
+}
+
+// Squares of `size` [m]. Cell by cell, not pixel by pixel, so that none is
+// lost.
+void DrawCells(const std::vector<Eigen::Vector2d>& centres,
+               const Rigid2& T_sheet_submap, const double size,
+               const Color& color, Sheet* const sheet) {
+  // Whole pixels: blended edges would look like doubt.
+  const double pixels =
+      std::max(1., std::round(size * sheet->frame.pixels_per_meter));
+  for (const Eigen::Vector2d& centre : centres) {
+    const Eigen::Vector2d corner =
+        sheet->frame.ToPixels(T_sheet_submap * centre).array() - 0.5 * pixels;
+    sheet->picture.DrawRectangle(corner.array().round(),
+                                 Eigen::Vector2d::Constant(pixels), color);
+  }
+}
+
+void DrawCorrespondences(const std::vector<PointPair>& correspondences,
+                         const Rigid2& T_sheet_reference,
+                         const Rigid2& T_sheet_query, Sheet* const sheet) {
+  for (const PointPair& pair : correspondences) {
+    const Eigen::Vector2d a =
+        sheet->frame.ToPixels(T_sheet_reference * pair.p_reference);
+    const Eigen::Vector2d b =
+        sheet->frame.ToPixels(T_sheet_query * pair.p_query);
+    sheet->picture.DrawPolyline({a, b}, 1., kCorrespondence);
+    sheet->picture.DrawCircle(a, 2., kCorrespondence, kCorrespondence);
+  }
+}
+
 }  // namespace
 
 Picture DrawDistanceField(const CellGeometry& geometry,
@@ -161,29 +231,14 @@ Picture DrawDistanceField(const CellGeometry& geometry,
         Hatch(&picture, x, y);
         continue;
       }
-      Color color = DistanceColor(*here);
-      const double level = std::floor(*here / kContourIntervalMeters);
-      for (const std::optional<double>& next :
-           {distance_at(x + 1, y), distance_at(x, y + 1)}) {
-        if (!next.has_value()) continue;
-        const double other = std::floor(*next / kContourIntervalMeters);
-        if (other == level) continue;
-        const bool is_wall = std::max(level, other) == 0.;
-        color = Mix(color, Color{0., 0., 0.}, is_wall ? 1. : 0.35);
-        break;
-      }
-      picture.BlendPixel(x, y, color);
+      const std::optional<double> right = distance_at(x + 1, y);
+      const std::optional<double> below = distance_at(x, y + 1);
+      double strength = right ? ContourStrength(*here, *right) : 0.;
+      if (strength == 0. && below) strength = ContourStrength(*here, *below);
+      picture.BlendPixel(x, y, Mix(DistanceColor(*here), kBlack, strength));
     }
   }
-  const Rigid2 T_grid_submap = geometry.T_submap_grid.Inverse();
-  for (const MarkedKeypoint& keypoint : keypoints) {
-    const Color fill =
-        keypoint.mark == KeypointMark::kMaximum  ? Color{0.9, 0.1, 0.1}
-        : keypoint.mark == KeypointMark::kSaddle ? Color{0.1, 0.7, 0.2}
-                                                 : Color{1., 0.9, 0.1};
-    picture.DrawCircle(sheet.frame.ToPixels(T_grid_submap * keypoint.position),
-                       3.5, fill, Color{0., 0., 0.});
-  }
+  DrawKeypoints(keypoints, geometry.T_submap_grid.Inverse(), &sheet);
   return std::move(sheet.picture);
 }
 
@@ -223,52 +278,18 @@ Picture DrawMatchedPair(const OccupancyGrid& reference,
   Sheet sheet = MakeSheet(KnownBounds(reference, T_sheet_reference)
                               .merged(KnownBounds(query, T_sheet_query)),
                           max_pixels);
-  Picture& picture = sheet.picture;
-  constexpr Color kReferenceOnly{0.82, 0.88, 0.97};
-  constexpr Color kQueryOnly{0.98, 0.87, 0.85};
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      const Eigen::Vector2d p_sheet = sheet.frame.CentreOf(x, y);
-      const bool in_reference = IsFreeAt(reference, p_sheet);
-      const bool in_query = IsFreeAt(query, T_query_sheet * p_sheet);
-      if (!in_reference && !in_query) continue;
-      picture.BlendPixel(x, y,
-                         !in_query       ? kReferenceOnly
-                         : !in_reference ? kQueryOnly
-                                         : kWhite);
-    }
-  }
-  // Walls are drawn cell by cell, not pixel by pixel, so that none is lost.
-  const auto draw_cells = [&](const std::vector<Eigen::Vector2d>& centres,
-                              const Rigid2& T_sheet_submap, const double size,
-                              const Color& color) {
-    // Whole pixels: blended edges would look like doubt.
-    const double pixels =
-        std::max(1., std::round(size * sheet.frame.pixels_per_meter));
-    for (const Eigen::Vector2d& centre : centres) {
-      const Eigen::Vector2d corner =
-          sheet.frame.ToPixels(T_sheet_submap * centre).array() - 0.5 * pixels;
-      picture.DrawRectangle(corner.array().round(),
-                            Eigen::Vector2d::Constant(pixels), color);
-    }
-  };
+  DrawFreeSpace(reference, query, T_query_sheet, &sheet);
   const double resolution = reference.geometry.resolution;
-  draw_cells(WallCentres(reference), T_sheet_reference, resolution,
-             kReferenceWall);
-  draw_cells(WallCentres(query), T_sheet_query, query.geometry.resolution,
-             kQueryWall);
-  draw_cells(ContradictedWalls(query, reference, T_reference_query),
-             T_sheet_reference, 2. * resolution, kContradiction);
-  draw_cells(ContradictedWalls(reference, query, T_reference_query.Inverse()),
-             T_sheet_query, 2. * resolution, kContradiction);
-  for (const PointPair& pair : correspondences) {
-    const Eigen::Vector2d a =
-        sheet.frame.ToPixels(T_sheet_reference * pair.p_reference);
-    const Eigen::Vector2d b =
-        sheet.frame.ToPixels(T_sheet_query * pair.p_query);
-    picture.DrawPolyline({a, b}, 1., kCorrespondence);
-    picture.DrawCircle(a, 2., kCorrespondence, kCorrespondence);
-  }
+  DrawCells(WallCentres(reference), T_sheet_reference, resolution,
+            kReferenceWall, &sheet);
+  DrawCells(WallCentres(query), T_sheet_query, query.geometry.resolution,
+            kQueryWall, &sheet);
+  DrawCells(ContradictedWalls(query, reference, T_reference_query),
+            T_sheet_reference, 2. * resolution, kContradiction, &sheet);
+  DrawCells(ContradictedWalls(reference, query, T_reference_query.Inverse()),
+            T_sheet_query, 2. * resolution, kContradiction, &sheet);
+  DrawCorrespondences(correspondences, T_sheet_reference, T_sheet_query,
+                      &sheet);
   return std::move(sheet.picture);
 }
 

@@ -25,7 +25,7 @@ constexpr double kMinReachableArea = 4.;
 constexpr double kRoundTrips = 2.25;
 constexpr int kMaxPlaces = 40;
 
-struct Place {
+struct Waypoint {
   Eigen::Array2i cell;
   ShortestPaths paths;
 };
@@ -37,7 +37,7 @@ int FlatIndex(const NavigationGrid& grid, const Eigen::Array2i& cell) {
 // A reachable cell whose cost from all places is at least half of the largest
 // there is; any reachable cell while there are no places.
 Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
-                           const std::vector<Place>& places,
+                           const std::vector<Waypoint>& places,
                            RandomNumbers* const random) {
   const int stride = grid.geometry.size.x();
   std::vector<std::pair<float, int>> candidates;
@@ -45,7 +45,7 @@ Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
   for (int k = 0; k != grid.reachable.size(); ++k) {
     if (!grid.reachable(k)) continue;
     float cost = std::numeric_limits<float>::infinity();
-    for (const Place& place : places) {
+    for (const Waypoint& place : places) {
       cost = std::min(cost, place.paths.cost[k]);
     }
     candidates.push_back({cost, k});
@@ -61,17 +61,19 @@ Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
   return {cell % stride, cell / stride};
 }
 
-float Cost(const NavigationGrid& grid, const Place& from, const Place& to) {
+float Cost(const NavigationGrid& grid, const Waypoint& from,
+           const Waypoint& to) {
   return from.paths.cost[FlatIndex(grid, to.cell)];
 }
 
 // Where the new place adds least to the round trip: after which place of it.
 size_t CheapestInsertion(const NavigationGrid& grid,
-                         const std::vector<Place>& trip, const Place& place) {
+                         const std::vector<Waypoint>& trip,
+                         const Waypoint& place) {
   size_t best = 0;
   float best_detour = std::numeric_limits<float>::infinity();
   for (size_t k = 0; k != trip.size(); ++k) {
-    const Place& next = trip[(k + 1) % trip.size()];
+    const Waypoint& next = trip[(k + 1) % trip.size()];
     const float detour = Cost(grid, trip[k], place) + Cost(grid, place, next) -
                          Cost(grid, trip[k], next);
     if (detour < best_detour) {
@@ -83,7 +85,7 @@ size_t CheapestInsertion(const NavigationGrid& grid,
 }
 
 float RoundTripCost(const NavigationGrid& grid,
-                    const std::vector<Place>& trip) {
+                    const std::vector<Waypoint>& trip) {
   float cost = 0.f;
   for (size_t k = 0; k != trip.size(); ++k) {
     cost += Cost(grid, trip[k], trip[(k + 1) % trip.size()]);
@@ -91,14 +93,14 @@ float RoundTripCost(const NavigationGrid& grid,
   return cost;
 }
 
-std::vector<Place> PlanRoundTrip(const NavigationGrid& grid,
-                                 const double length,
-                                 RandomNumbers* const random) {
-  std::vector<Place> trip;
+std::vector<Waypoint> PlanRoundTrip(const NavigationGrid& grid,
+                                    const double length,
+                                    RandomNumbers* const random) {
+  std::vector<Waypoint> trip;
   while (trip.size() < 2 ||
          (RoundTripCost(grid, trip) < length && trip.size() < kMaxPlaces)) {
     const Eigen::Array2i cell = DrawFarCell(grid, trip, random);
-    Place place{cell, FindShortestPaths(grid, cell)};
+    Waypoint place{cell, FindShortestPaths(grid, cell)};
     const size_t position =
         trip.empty() ? 0 : CheapestInsertion(grid, trip, place) + 1;
     trip.insert(trip.begin() + position, std::move(place));
@@ -120,15 +122,15 @@ std::vector<int> MakeItinerary(const int num_places) {
 
 // Repeats the itinerary until the path is long enough, with what the robot
 // saves by cutting corners and turning short of dead ends.
-Path MakePath(const NavigationGrid& grid, const std::vector<Place>& trip,
+Path MakePath(const NavigationGrid& grid, const std::vector<Waypoint>& trip,
               const DriveOptions& options) {
   const std::vector<int> itinerary =
       MakeItinerary(static_cast<int>(trip.size()));
   Path path;
   double length = 0.;
   for (size_t k = 0; length < 1.5 * options.length; ++k) {
-    const Place& from = trip[itinerary[k % itinerary.size()]];
-    const Place& to = trip[itinerary[(k + 1) % itinerary.size()]];
+    const Waypoint& from = trip[itinerary[k % itinerary.size()]];
+    const Waypoint& to = trip[itinerary[(k + 1) % itinerary.size()]];
     for (const Eigen::Vector2d& point :
          SmoothPath(grid, from.paths, to.cell, options.clearance)) {
       if (!path.empty()) length += (point - path.back()).norm();
@@ -209,7 +211,7 @@ absl::StatusOr<std::vector<DrivenPose>> Drive(const FloorPlan& plan,
         " m^2 at least ", options.clearance, " m away from walls"));
   }
   RandomNumbers random(seed, RandomStream::kDrive);
-  const std::vector<Place> trip =
+  const std::vector<Waypoint> trip =
       PlanRoundTrip(grid, options.length / kRoundTrips, &random);
   return Follow(MakePath(grid, trip, options), options);
 }

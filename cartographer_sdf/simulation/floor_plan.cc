@@ -52,6 +52,52 @@ std::optional<int64_t> ReadPixel(const bool is_text, const int64_t maximum,
   return pixel;
 }
 
+struct PgmHeader {
+  bool is_text = false;
+  int64_t width = 0;
+  int64_t height = 0;
+  int64_t maximum = 0;  // of a pixel: white
+};
+
+absl::StatusOr<PgmHeader> ReadPgmHeader(const std::string& path,
+                                        std::istream* const in) {
+  const int magic[2] = {in->get(), in->get()};
+  const bool is_text = magic[1] == '2';
+  if (magic[0] != 'P' || (!is_text && magic[1] != '5')) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, " is not a PGM image (P2 or P5)"));
+  }
+  const std::optional<int64_t> width = ReadNumber(kMaxPixels, in);
+  const std::optional<int64_t> height = ReadNumber(kMaxPixels, in);
+  const std::optional<int64_t> maximum = ReadNumber(65535, in);
+  if (!width || !height || !maximum || *width < 1 || *height < 1 ||
+      *maximum < 1 || *width > kMaxPixels / *height ||
+      !std::isspace(in->get())) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the PGM header of ", path, " is broken or too large"));
+  }
+  return PgmHeader{is_text, *width, *height, *maximum};
+}
+
+// Of each pixel, from the upper left on by rows.
+absl::StatusOr<std::vector<bool>> ReadOccupied(const std::string& path,
+                                               const PgmHeader& header,
+                                               std::istream* const in) {
+  std::vector<bool> occupied;  // Grows with the data, not with the header.
+  const int64_t num_pixels = header.width * header.height;
+  for (int64_t k = 0; k != num_pixels; ++k) {
+    const std::optional<int64_t> pixel =
+        ReadPixel(header.is_text, header.maximum, in);
+    if (!pixel) {
+      return absl::DataLossError(absl::StrCat(
+          path, " ends or is corrupted at pixel ", k, " of ", num_pixels));
+    }
+    occupied.push_back(static_cast<double>(*pixel) <
+                       kFreeBrightness * static_cast<double>(header.maximum));
+  }
+  return occupied;
+}
+
 // Calls visit(cell, its centre from that of the box) for the cells of a box of
 // half the given sizes, clipped to the plan.
 template <typename Visitor>
@@ -151,39 +197,19 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
   }
   std::ifstream in(path, std::ios::binary);
   if (!in) return absl::NotFoundError(absl::StrCat("cannot open ", path));
-  const int magic[2] = {in.get(), in.get()};
-  const bool is_text = magic[1] == '2';
-  if (magic[0] != 'P' || (!is_text && magic[1] != '5')) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, " is not a PGM image (P2 or P5)"));
-  }
-  const std::optional<int64_t> width = ReadNumber(kMaxPixels, &in);
-  const std::optional<int64_t> height = ReadNumber(kMaxPixels, &in);
-  const std::optional<int64_t> maximum = ReadNumber(65535, &in);
-  if (!width || !height || !maximum || *width < 1 || *height < 1 ||
-      *maximum < 1 || *width > kMaxPixels / *height ||
-      !std::isspace(in.get())) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the PGM header of ", path, " is broken or too large"));
-  }
-  std::vector<bool> occupied;  // Grows with the data, not with the header.
-  for (int64_t k = 0; k != *width * *height; ++k) {
-    const std::optional<int64_t> pixel = ReadPixel(is_text, *maximum, &in);
-    if (!pixel) {
-      return absl::DataLossError(absl::StrCat(path,
-                                              " ends or is corrupted at pixel ",
-                                              k, " of ", *width * *height));
-    }
-    occupied.push_back(static_cast<double>(*pixel) <
-                       kFreeBrightness * static_cast<double>(*maximum));
-  }
+  const absl::StatusOr<PgmHeader> header = ReadPgmHeader(path, &in);
+  if (!header.ok()) return header.status();
+  const absl::StatusOr<std::vector<bool>> occupied =
+      ReadOccupied(path, *header, &in);
+  if (!occupied.ok()) return occupied.status();
+  const auto& [is_text, width, height, maximum] = *header;
   FloorPlan plan;
   plan.geometry.resolution = resolution;
-  plan.geometry.size = Eigen::Array2i(*width, *height);
-  plan.occupied.resize(*width, *height);
-  for (int64_t j = 0; j != *height; ++j) {
-    for (int64_t i = 0; i != *width; ++i) {
-      plan.occupied(i, *height - 1 - j) = occupied[j * *width + i];
+  plan.geometry.size = Eigen::Array2i(width, height);
+  plan.occupied.resize(width, height);
+  for (int64_t j = 0; j != height; ++j) {
+    for (int64_t i = 0; i != width; ++i) {
+      plan.occupied(i, height - 1 - j) = (*occupied)[j * width + i];
     }
   }
   return plan;

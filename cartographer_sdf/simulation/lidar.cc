@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "cartographer_sdf/simulation/grid_traversal.h"
+#include "cartographer_sdf/grid/grid_traversal.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -101,7 +101,7 @@ Scan TakeScan(const FloorPlan& plan, const std::vector<Person>& people,
       scan.returns.push_back(
           (std::max(0., *range + noise) * beam).cast<float>());
     } else {
-      scan.empty_beams.push_back(beam.cast<float>());
+      scan.misses.push_back((options.max_range * beam).cast<float>());
     }
   }
   return scan;

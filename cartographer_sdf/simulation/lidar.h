@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/scan.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/people.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
@@ -36,15 +37,6 @@ struct LidarOptions {
 
 [[nodiscard]] std::string Validate(const LidarOptions& options);
 
-// What a lidar at the origin of the robot frame saw.
-struct Scan {
-  // Points hit, in the robot frame [m].
-  std::vector<Eigen::Vector2f> returns;
-  // Unit directions in the robot frame of the beams without an echo within the
-  // lidar's range. Lost beams are absent from both.
-  std::vector<Eigen::Vector2f> empty_beams;
-};
-
 // Distance from a point to the first occupied cell in a direction (of unit
 // norm), those that are unseen left out, and if so asked those of glass;
 // nothing where there is none within `max_range` or within the plan.
@@ -54,7 +46,8 @@ struct Scan {
                                             double max_range,
                                             bool through_glass = false);
 
-// `people` stand before the walls.
+// In the robot frame; misses end at the largest range. `people` stand before
+// the walls.
 [[nodiscard]] Scan TakeScan(const FloorPlan& plan,
                             const std::vector<Person>& people,
                             const Rigid2& T_world_robot,

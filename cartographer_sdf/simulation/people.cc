@@ -22,11 +22,55 @@ constexpr double kTimeStep = 0.1;
 // Between a person's centre and walls [m].
 constexpr double kClearance = 0.3;
 
-const Eigen::Vector2d& AtOrLast(const std::vector<Eigen::Vector2d>& places,
-                                const double index) {
+using Places = std::vector<Eigen::Vector2d>;
+
+const Eigen::Vector2d& AtOrLast(const Places& places, const double index) {
   CHECK(!places.empty());
   return places[std::min(static_cast<size_t>(std::max(0., index)),
                          places.size() - 1)];
+}
+
+// Where somebody is who walks about, every kTimeStep.
+absl::StatusOr<Places> Walk(const FloorPlan& plan, const double speed,
+                            const double duration,
+                            RandomNumbers* const random) {
+  DriveOptions walk;
+  walk.clearance = kClearance;
+  walk.speed = speed;
+  // Turns on the spot take time that is not walked.
+  walk.length = std::max(1., speed * duration);
+  walk.turn_rate = 3.;
+  walk.time_step = kTimeStep;
+  const absl::StatusOr<std::vector<DrivenPose>> driven =
+      Drive(plan, walk, static_cast<uint32_t>(random->Index(1 << 30)));
+  if (!driven.ok()) return driven.status();
+  Places places;
+  for (const DrivenPose& pose : *driven) {
+    places.push_back(pose.T_world_robot.translation());
+  }
+  return places;
+}
+
+// All places where somebody can stand.
+Places FindRoom(const FloorPlan& plan) {
+  const NavigationGrid grid = MakeNavigationGrid(plan, kClearance);
+  Places room;
+  for (int j = 0; j != grid.geometry.size.y(); ++j) {
+    for (int i = 0; i != grid.geometry.size.x(); ++i) {
+      if (!grid.reachable(i, j)) continue;
+      room.push_back(grid.geometry.CellCentre({i, j}));
+    }
+  }
+  return room;
+}
+
+Places DrawPlaces(const Places& room, const int num_places,
+                  RandomNumbers* const random) {
+  Places places;
+  for (int n = 0; n != num_places; ++n) {
+    places.push_back(room[random->Index(static_cast<int>(room.size()))]);
+  }
+  return places;
 }
 
 }  // namespace
@@ -71,44 +115,21 @@ absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
   people.options_ = options;
   RandomNumbers random(seed, RandomStream::kPeople);
   for (int k = 0; k != options.num_walking; ++k) {
-    DriveOptions walk;
-    walk.clearance = kClearance;
-    walk.speed = options.walking_speed;
-    // Turns on the spot take time that is not walked.
-    walk.length = std::max(1., options.walking_speed * duration);
-    walk.turn_rate = 3.;
-    walk.time_step = kTimeStep;
-    const absl::StatusOr<std::vector<DrivenPose>> driven =
-        Drive(plan, walk, static_cast<uint32_t>(random.Index(1 << 30)));
-    if (!driven.ok()) return driven.status();
-    std::vector<Eigen::Vector2d> places;
-    for (const DrivenPose& pose : *driven) {
-      places.push_back(pose.T_world_robot.translation());
-    }
-    people.walks_.push_back(std::move(places));
+    absl::StatusOr<Places> walk =
+        Walk(plan, options.walking_speed, duration, &random);
+    if (!walk.ok()) return walk.status();
+    people.walks_.push_back(*std::move(walk));
   }
   if (options.num_standing == 0) return people;
-  const NavigationGrid grid = MakeNavigationGrid(plan, kClearance);
-  std::vector<Eigen::Vector2d> cells;
-  for (int j = 0; j != grid.geometry.size.y(); ++j) {
-    for (int i = 0; i != grid.geometry.size.x(); ++i) {
-      if (grid.reachable(i, j)) {
-        cells.push_back(grid.geometry.CellCentre({i, j}));
-      }
-    }
-  }
-  if (cells.empty()) {
+  const Places room = FindRoom(plan);
+  if (room.empty()) {
     return absl::InvalidArgumentError("the floor plan has no room for people");
   }
   const int num_stands =
       static_cast<int>(std::ceil(duration / options.standing_time)) + 1;
   for (int k = 0; k != options.num_standing; ++k) {
     people.shifts_.push_back(random.Uniform(0., 1.));
-    std::vector<Eigen::Vector2d> places;
-    for (int n = 0; n != num_stands; ++n) {
-      places.push_back(cells[random.Index(static_cast<int>(cells.size()))]);
-    }
-    people.stands_.push_back(std::move(places));
+    people.stands_.push_back(DrawPlaces(room, num_stands, &random));
   }
   return people;
 }

@@ -60,8 +60,7 @@ PointCloud2 FilterVoxels(const std::vector<Eigen::Vector2f>& points,
 
 SimulatedSubmap MakeSubmap(const std::vector<SimulatedNode>& nodes,
                            const std::vector<Scan>& scans, const int first_node,
-                           const int end_node,
-                           const SubmapGridOptions& options) {
+                           const int end_node, const ScanGridOptions& options) {
   SimulatedSubmap submap;
   submap.first_node = first_node;
   submap.end_node = end_node;
@@ -70,12 +69,93 @@ SimulatedSubmap MakeSubmap(const std::vector<SimulatedNode>& nodes,
   const Rigid2 T_submap_local = submap.T_local_submap.Inverse();
   submap.T_world_submap =
       first.T_world_node * (T_submap_local * first.T_local_node).Inverse();
-  std::vector<PosedScan> posed;
+  ScanGrid grid(options);
   for (int k = first_node; k != end_node; ++k) {
-    posed.push_back({T_submap_local * nodes[k].T_local_node, &scans[k]});
+    grid.Insert(T_submap_local * nodes[k].T_local_node, scans[k]);
   }
-  submap.grid = BuildSubmapGrid(posed, options);
+  submap.grid = grid.Crop();
   return submap;
+}
+
+// Each submap takes the nodes of two intervals, and shares each with another.
+std::vector<SimulatedSubmap> MakeSubmaps(
+    const std::vector<SimulatedNode>& nodes, const std::vector<Scan>& scans,
+    const SimulationOptions& options, const ProgressCallback& on_progress) {
+  const int interval = options.local_slam.num_range_data;
+  const int num_submaps = static_cast<int>(nodes.size()) / interval - 1;
+  std::vector<SimulatedSubmap> submaps;
+  for (int k = 0; k != num_submaps; ++k) {
+    submaps.push_back(MakeSubmap(nodes, scans, k * interval, (k + 2) * interval,
+                                 options.grid));
+    if (on_progress) on_progress(0.5 + 0.5 * (k + 1.) / num_submaps);
+  }
+  return submaps;
+}
+
+// As FilterMotion, without those at the end that fill no submap.
+absl::StatusOr<std::vector<size_t>> ChooseNodes(
+    const std::vector<DrivenPose>& drive, const LocalSlamOptions& options) {
+  std::vector<size_t> kept = FilterMotion(drive, options);
+  const int num_submaps =
+      static_cast<int>(kept.size()) / options.num_range_data - 1;
+  if (num_submaps < 1) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the drive has ", kept.size(), " nodes, but a submap is ",
+                     "finished only after ", 2 * options.num_range_data));
+  }
+  kept.resize((num_submaps + 1) * options.num_range_data);
+  return kept;
+}
+
+std::vector<DrivenPose> PosesAt(const std::vector<size_t>& indices,
+                                const std::vector<DrivenPose>& drive) {
+  std::vector<DrivenPose> poses;
+  for (const size_t k : indices) poses.push_back(drive[k]);
+  return poses;
+}
+
+std::vector<Scan> TakeScans(const FloorPlan& plan, const People& people,
+                            const std::vector<DrivenPose>& poses,
+                            const LidarOptions& options,
+                            const ProgressCallback& on_progress,
+                            RandomNumbers* const random) {
+  std::vector<Scan> scans;
+  for (const DrivenPose& pose : poses) {
+    scans.push_back(TakeScan(plan, people.At(pose.seconds, pose.T_world_robot),
+                             pose.T_world_robot, options, random));
+    if (on_progress) {
+      on_progress(0.5 * static_cast<double>(scans.size()) /
+                  static_cast<double>(poses.size()));
+    }
+  }
+  return scans;
+}
+
+std::vector<SimulatedNode> MakeNodes(const std::vector<size_t>& kept,
+                                     const std::vector<DrivenPose>& drive,
+                                     const std::vector<DriftedPose>& drifted,
+                                     const std::vector<Scan>& scans,
+                                     const LocalSlamOptions& options) {
+  std::vector<SimulatedNode> nodes;
+  for (size_t n = 0; n != kept.size(); ++n) {
+    const size_t k = kept[n];
+    nodes.push_back({ToTicks(drive[k].seconds), drifted[k].T_local_robot,
+                     drive[k].T_world_robot,
+                     FilterVoxels(scans[n].returns, options.voxel_size)});
+  }
+  return nodes;
+}
+
+// Up to pose `last`, which counts.
+std::vector<SimulatedOdometry> MakeOdometry(
+    const size_t last, const std::vector<DrivenPose>& drive,
+    const std::vector<DriftedPose>& drifted) {
+  std::vector<SimulatedOdometry> odometry;
+  for (size_t k = 0; k <= last; ++k) {
+    odometry.push_back(
+        {ToTicks(drive[k].seconds), drifted[k].T_odometry_robot});
+  }
+  return odometry;
 }
 
 }  // namespace
@@ -121,41 +201,17 @@ absl::StatusOr<SimulatedMap> Simulate(const FloorPlan& plan,
   RandomNumbers drift_random(seed, RandomStream::kDrift);
   const std::vector<DriftedPose> drifted =
       AddDrift(*drive, options.drift, &drift_random);
-
-  std::vector<size_t> kept = FilterMotion(*drive, options.local_slam);
-  const int num_range_data = options.local_slam.num_range_data;
-  const int num_submaps = static_cast<int>(kept.size()) / num_range_data - 1;
-  if (num_submaps < 1) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the drive has ", kept.size(), " nodes, but a submap is ",
-                     "finished only after ", 2 * num_range_data));
-  }
-  kept.resize((num_submaps + 1) * num_range_data);
-
-  SimulatedMap map;
-  std::vector<Scan> scans;
+  const absl::StatusOr<std::vector<size_t>> kept =
+      ChooseNodes(*drive, options.local_slam);
+  if (!kept.ok()) return kept.status();
   RandomNumbers lidar_random(seed, RandomStream::kLidar);
-  for (const size_t k : kept) {
-    const DrivenPose& pose = (*drive)[k];
-    scans.push_back(TakeScan(plan, people->At(pose.seconds, pose.T_world_robot),
-                             pose.T_world_robot, options.lidar, &lidar_random));
-    map.nodes.push_back(
-        {ToTicks(pose.seconds), drifted[k].T_local_robot, pose.T_world_robot,
-         FilterVoxels(scans.back().returns, options.local_slam.voxel_size)});
-    if (on_progress) {
-      on_progress(0.5 * static_cast<double>(scans.size()) /
-                  static_cast<double>(kept.size()));
-    }
-  }
-  for (size_t k = 0; k <= kept.back(); ++k) {
-    map.odometry.push_back(
-        {ToTicks((*drive)[k].seconds), drifted[k].T_odometry_robot});
-  }
-  for (int k = 0; k != num_submaps; ++k) {
-    map.submaps.push_back(MakeSubmap(map.nodes, scans, k * num_range_data,
-                                     (k + 2) * num_range_data, options.grid));
-    if (on_progress) on_progress(0.5 + 0.5 * (k + 1.) / num_submaps);
-  }
+  const std::vector<Scan> scans =
+      TakeScans(plan, *people, PosesAt(*kept, *drive), options.lidar,
+                on_progress, &lidar_random);
+  SimulatedMap map;
+  map.nodes = MakeNodes(*kept, *drive, drifted, scans, options.local_slam);
+  map.odometry = MakeOdometry(kept->back(), *drive, drifted);
+  map.submaps = MakeSubmaps(map.nodes, scans, options, on_progress);
   return map;
 }
 

@@ -16,6 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/scan_grid.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
@@ -24,7 +25,6 @@
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/lidar.h"
 #include "cartographer_sdf/simulation/people.h"
-#include "cartographer_sdf/simulation/submap_grid.h"
 
 namespace cartographer_sdf {
 
@@ -45,7 +45,7 @@ struct SimulationOptions {
   PeopleOptions people;
   DriftOptions drift;
   LocalSlamOptions local_slam;
-  SubmapGridOptions grid;
+  ScanGridOptions grid;
 };
 
 [[nodiscard]] std::string Validate(const LocalSlamOptions& options);

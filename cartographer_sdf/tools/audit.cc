@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/audit/audit.h"
+#include "cartographer_sdf/apps/audit.h"
 
 #include <iostream>
 #include <map>
@@ -9,8 +9,9 @@
 #include <string>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/tools/audit_report.h"
-#include "cartographer_sdf/tools/audit_table.h"
+#include "cartographer_sdf/execution/parallel_for.h"
+#include "cartographer_sdf/report/audit_report.h"
+#include "cartographer_sdf/report/audit_table.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -45,13 +46,42 @@ void PrintSummary(const Audit& audit) {
   }
 }
 
+// The map last: it stands for all having gone well.
+absl::Status WriteFiles(const Options& options, const Audit& audit,
+                        StageProgress* const progress) {
+  absl::Status status;
+  if (!FLAGS_constraints.empty()) {
+    status = WriteAuditTable(FLAGS_constraints, audit);
+  }
+  std::optional<PreparedMap> output;
+  const auto read_and_write =
+      [&](const SubmapCallback& on_submap) -> absl::Status {
+    if (FLAGS_output.empty()) {
+      return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
+          .status();
+    }
+    absl::StatusOr<PreparedMap> map =
+        PrepareMap(FLAGS_input, FLAGS_output, audit.pose_graph, {on_submap, {}},
+                   progress->Begin("write"));
+    if (map.ok()) output.emplace(*std::move(map));
+    return map.status();
+  };
+  if (status.ok() && !FLAGS_report.empty()) {
+    status = WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input, audit,
+                              read_and_write);
+  } else if (status.ok() && !FLAGS_output.empty()) {
+    status = read_and_write({});
+  }
+  if (status.ok() && output) status = output->Commit();
+  return status;
+}
+
 absl::Status RunAudit() {
   const absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError(
-        "audit needs match.method = \"sdf\": the number of inliers is no "
-        "verification");
+  if (absl::Status status = RequireVerification(options->loop_closing, "audit");
+      !status.ok()) {
+    return status;
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
@@ -63,19 +93,7 @@ absl::Status RunAudit() {
       AuditMap(options->loop_closing, options->audit, FLAGS_input, *frozen,
                MakeExecutor(*num_threads), progress.Callback());
   if (!audit.ok()) return audit.status();
-  // The map last: it stands for all having gone well.
-  absl::Status status;
-  if (!FLAGS_constraints.empty()) {
-    status = WriteAuditTable(FLAGS_constraints, *audit);
-  }
-  if (status.ok() && !FLAGS_report.empty()) {
-    status = WriteAuditReport(FLAGS_report, FLAGS_input, *options, *audit,
-                              progress.Begin("report"));
-  }
-  if (status.ok() && !FLAGS_output.empty()) {
-    status = WriteMap(FLAGS_input, FLAGS_output, audit->pose_graph,
-                      progress.Begin("write"));
-  }
+  const absl::Status status = WriteFiles(*options, *audit, &progress);
   if (!status.ok()) return status;
   PrintSummary(*audit);
   if (!FLAGS_output.empty()) std::cout << FLAGS_output << "\n";

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "cartographer_sdf/apps/close_loops.h"
+
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/evaluation/match_table.h"
-#include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/tools/close_loops_report.h"
+#include "cartographer_sdf/report/close_loops_report.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -23,51 +27,79 @@ namespace cartographer_sdf {
 namespace {
 
 absl::Status WriteClosures(const std::string& path,
-                           const std::vector<ClosureOutcome>& closures) {
+                           const std::vector<Closure>& closures) {
   std::vector<MatchRow> rows;
-  for (const ClosureOutcome& outcome : closures) {
-    if (outcome.fate != Fate::kInGraph) continue;
+  for (const Closure& closure : closures) {
+    if (closure.status != ClosureStatus::kInGraph) continue;
     rows.push_back(
-        ToRow(outcome.match, true, VerdictName(outcome.match.verdict)));
+        ToRow(closure.match, true, VerdictName(closure.match.verdict)));
   }
   return WriteMatches(path, rows);
 }
 
 void PrintSummary(const LoopClosingResult& result) {
-  std::map<Fate, int> fates;
-  for (const ClosureOutcome& outcome : result.closures) ++fates[outcome.fate];
+  std::map<ClosureStatus, int> statuses;
+  for (const Closure& closure : result.closed.closures)
+    ++statuses[closure.status];
   std::cout << absl::StrFormat(
       "%d submaps, %d matches accepted by verification\n", result.num_places,
-      result.closures.size());
-  for (const auto& [fate, count] : fates) {
-    std::cout << absl::StrFormat("  %5d %s\n", count, FateName(fate));
+      result.closed.closures.size());
+  for (const auto& [status, count] : statuses) {
+    std::cout << absl::StrFormat("  %5d %s\n", count,
+                                 ClosureStatusName(status));
   }
-  if (!result.torn_submaps.empty()) {
+  if (!result.closed.torn_submaps.empty()) {
     std::cout << absl::StrFormat("%d submaps are torn inside:\n",
-                                 result.torn_submaps.size());
-    for (const auto& [id, tear] : result.torn_submaps) {
+                                 result.closed.torn_submaps.size());
+    for (const auto& [id, tear] : result.closed.torn_submaps) {
       std::cout << "  " << DescribeTear(id, tear) << "\n";
     }
   }
-  if (result.closures.empty()) {
+  if (result.closed.closures.empty()) {
     std::cout << "No loop closure was found; the map is as it was.\n";
   }
   for (const auto& [stage, seconds] : result.stage_seconds) {
     std::cout << absl::StrFormat("  %7.2f s %s\n", seconds, stage);
   }
-  if (!result.optimizations.empty() && !result.optimizations.back().converged) {
+  if (!result.closed.optimizations.empty() &&
+      !result.closed.optimizations.back().converged) {
     std::cout << "The optimisation did not converge: "
-              << result.optimizations.back().message << "\n";
+              << result.closed.optimizations.back().message << "\n";
   }
+}
+
+// The map last: it stands for all having gone well.
+absl::Status WriteFiles(const Options& options, const LoopClosingResult& result,
+                        StageProgress* const progress) {
+  absl::Status status;
+  if (!FLAGS_closures.empty()) {
+    status = WriteClosures(FLAGS_closures, result.closed.closures);
+  }
+  std::optional<PreparedMap> output;
+  const auto write = [&](const SubmapCallback& on_submap) -> absl::Status {
+    absl::StatusOr<PreparedMap> map =
+        PrepareMap(FLAGS_input, FLAGS_output, result.closed.pose_graph,
+                   {on_submap, {}}, progress->Begin("write"));
+    if (map.ok()) output.emplace(*std::move(map));
+    return map.status();
+  };
+  if (status.ok()) {
+    // The report shows the grids of the map, which come by as it is written.
+    status = FLAGS_report.empty()
+                 ? write({})
+                 : WriteCloseLoopsReport(ReportRequestOfFlags(options),
+                                         FLAGS_input, result, write);
+  }
+  return status.ok() ? output->Commit() : status;
 }
 
 absl::Status RunCloseLoops() {
   const absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError(
-        "close_loops needs match.method = \"sdf\": the number of inliers is no "
-        "verification");
+  if (absl::Status status =
+          RequireVerification(options->loop_closing, "close_loops");
+      !status.ok()) {
+    return status;
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
@@ -79,19 +111,7 @@ absl::Status RunCloseLoops() {
       CloseLoops(options->loop_closing, FLAGS_input, *frozen,
                  MakeExecutor(*num_threads), progress.Callback());
   if (!result.ok()) return result.status();
-  // The map last: it stands for all having gone well.
-  absl::Status status;
-  if (!FLAGS_closures.empty()) {
-    status = WriteClosures(FLAGS_closures, result->closures);
-  }
-  if (status.ok() && !FLAGS_report.empty()) {
-    status = WriteCloseLoopsReport(FLAGS_report, FLAGS_input, *options, *result,
-                                   progress.Begin("report"));
-  }
-  if (status.ok()) {
-    status = WriteMap(FLAGS_input, FLAGS_output, result->pose_graph,
-                      progress.Begin("write"));
-  }
+  const absl::Status status = WriteFiles(*options, *result, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);
   std::cout << FLAGS_output << "\n";

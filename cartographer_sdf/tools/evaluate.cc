@@ -14,15 +14,15 @@
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/place_recognition.h"
 #include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/evaluation/relations.h"
-#include "cartographer_sdf/evaluation/text_file.h"
 #include "cartographer_sdf/evaluation/trajectory_error.h"
 #include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/report/svg_plot.h"
 #include "cartographer_sdf/tools/evaluate_random_pairs.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -81,7 +81,7 @@ absl::StatusOr<EvaluatedMap> ReadEvaluatedMap(const std::string& path,
     };
   }
   absl::StatusOr<MapState> state =
-      ReadMap(path, on_submap, progress.Callback());
+      ReadMap(path, {on_submap}, progress.Callback());
   if (!state.ok()) return state.status();
   result.pose_graph = std::move(state->pose_graph);
   return result;
@@ -185,43 +185,52 @@ std::string SeriesName(const std::string& path) {
   return name;
 }
 
+// A map with the truth of its submaps.
+struct TrueMap {
+  EvaluatedMap map;
+  Truth truth;
+};
+
+// The map at --query; none where that is not given.
+absl::StatusOr<std::optional<TrueMap>> ReadQuery() {
+  if (FLAGS_query.empty()) return std::nullopt;
+  absl::StatusOr<EvaluatedMap> map =
+      ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
+  if (!map.ok()) return map.status();
+  absl::StatusOr<Truth> truth = ReadTruth(FLAGS_query_truth);
+  if (!truth.ok()) return truth.status();
+  return TrueMap{*std::move(map), *std::move(truth)};
+}
+
 absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
                                  std::vector<Measurement>* const measurements,
                                  std::vector<NamedCurve>* const curves) {
-  std::optional<EvaluatedMap> query;
-  Truth query_truth;
-  if (!FLAGS_query.empty()) {
-    absl::StatusOr<EvaluatedMap> read =
-        ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
-    if (!read.ok()) return read.status();
-    query = *std::move(read);
-    absl::StatusOr<Truth> read_truth = ReadTruth(FLAGS_query_truth);
-    if (!read_truth.ok()) return read_truth.status();
-    query_truth = *std::move(read_truth);
-  }
-  PairTruths pairs = query ? ComputePairTruths(map.observed, truth,
-                                               query->observed, query_truth)
-                           : ComputePairTruths(map.observed, truth);
+  const absl::StatusOr<std::optional<TrueMap>> query = ReadQuery();
+  if (!query.ok()) return query.status();
+  PairTruths pairs =
+      *query ? ComputePairTruths(map.observed, truth, (*query)->map.observed,
+                                 (*query)->truth)
+             : ComputePairTruths(map.observed, truth);
   MarkPositives(FLAGS_positive_overlap, &pairs);
   const std::vector<std::string> files = FilesOf(FLAGS_matches);
   std::vector<Measurement> accepted;
   const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
   for (size_t k = 0; k < files.size(); ++k) {
-    const std::string& file = files[k];
-    const absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(file);
+    const absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(files[k]);
     if (!matches.ok()) return matches.status();
     const std::vector<AnswerLabel> labels =
-        query ? LabelAnswers(pairs, truth, query_truth, *matches)
-              : LabelAnswers(pairs, truth, *matches);
+        *query ? LabelAnswers(pairs, truth, (*query)->truth, *matches)
+               : LabelAnswers(pairs, truth, *matches);
+    const std::string series = SeriesName(files[k]);
     const std::string suffix =
-        files.size() == 1 ? "" : absl::StrCat(" ", SeriesName(file));
+        files.size() == 1 ? "" : absl::StrCat(" ", series);
     const PrecisionRecallCurve curve = JudgeAnswers(pairs, labels);
     measurements->push_back(MeasureMatches(absl::StrCat("matches", suffix),
                                            ScoreAnswers(pairs, labels), curve));
     accepted.push_back(
         MeasureAccepted(absl::StrCat("accepted", suffix),
                         ScorePlaceRecognition(pairs, labels, *matches)));
-    curves->push_back({SeriesName(file), curve, /*is_variant=*/false});
+    curves->push_back({series, curve, /*is_variant=*/false});
     if (label_files.empty()) continue;
     const absl::Status status = WriteAnswerLabels(label_files[k], labels);
     if (!status.ok()) return status;
@@ -347,6 +356,24 @@ absl::Status RunEvaluate() {
   return absl::OkStatus();
 }
 
+constexpr char kDescription[] =
+    "Errors of scans against --relations, of all and of those more than 30 s "
+    "apart; of nodes against --truth after a rigid alignment; and scores of "
+    "--matches: of answers by falling score, the fraction of positive pairs "
+    "that are answered before the first wrong one (recall_p1), at a "
+    "precision of 0.99 (recall_p99), and average precision (ap). Answers of "
+    "one score count in the order of the table, in recall_p1_ties all "
+    "together. Of several tables each gets its line.\n\n"
+    "A pair of submaps is positive where half of the smaller observed area "
+    "lies in the other. An answer is right within 0.5 m and 10 degrees of "
+    "the truth, wrong beyond 1 m or 10 degrees, and near between. --labels "
+    "writes this for each match.\n\n"
+    "--random_pairs is the protocol of the paper: pairs drawn by "
+    "--pair_seed, "
+    "one submap of each turned before it is described, matched by --methods. "
+    "An answer is right where the pair's common area reaches "
+    "--min_overlaps; in the columns with _pose, where its pose is, too.";
+
 }  // namespace
 
 Subcommand Evaluate() {
@@ -355,22 +382,7 @@ Subcommand Evaluate() {
       "errors of a map and of matches against the truth",
       "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
       "[--random_pairs N]]",
-      "Errors of scans against --relations, of all and of those more than 30 s "
-      "apart; of nodes against --truth after a rigid alignment; and scores of "
-      "--matches: of answers by falling score, the fraction of positive pairs "
-      "that are answered before the first wrong one (recall_p1), at a "
-      "precision of 0.99 (recall_p99), and average precision (ap). Answers of "
-      "one score count in the order of the table, in recall_p1_ties all "
-      "together. Of several tables each gets its line.\n\n"
-      "A pair of submaps is positive where half of the smaller observed area "
-      "lies in the other. An answer is right within 0.5 m and 10 degrees of "
-      "the truth, wrong beyond 1 m or 10 degrees, and near between. --labels "
-      "writes this for each match.\n\n"
-      "--random_pairs is the protocol of the paper: pairs drawn by "
-      "--pair_seed, "
-      "one submap of each turned before it is described, matched by --methods. "
-      "An answer is right where the pair's common area reaches "
-      "--min_overlaps; in the columns with _pose, where its pose is, too.",
+      kDescription,
       {"input"},
       {"relations",
        "seconds_per_scan",

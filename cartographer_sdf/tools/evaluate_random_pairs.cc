@@ -16,6 +16,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/evaluation/random_pairs.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/method_options.h"
@@ -87,14 +88,15 @@ absl::StatusOr<RandomPairData> ReadData(const Truth& truth,
                                         const ProgressCallback& on_progress) {
   RandomPairData data;
   std::map<SubmapId, ObservedPoints> observed;
-  absl::StatusOr<MapState> state = ReadMap(
-      FLAGS_input,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        if (truth.T_world_submap.count(id) == 0) return;
-        observed[id] = ThinnedObservedPoints(grid);
-        data.grids.emplace(id, grid);
-      },
-      on_progress);
+  absl::StatusOr<MapState> state =
+      ReadMap(FLAGS_input,
+              {[&](const SubmapId& id, const SubmapSummary&,
+                   const OccupancyGrid& grid) {
+                if (truth.T_world_submap.count(id) == 0) return;
+                observed[id] = ThinnedObservedPoints(grid);
+                data.grids.emplace(id, grid);
+              }},
+              on_progress);
   if (!state.ok()) return state.status();
   data.state = *std::move(state);
   data.truths = ComputePairTruths(observed, truth, FLAGS_min_index_gap);
@@ -119,19 +121,45 @@ absl::StatusOr<std::vector<std::vector<MatchRow>>> Answer(
   std::map<SubmapId, SubmapCloud> clouds;
   if (options->describes_clouds) {
     absl::StatusOr<std::map<SubmapId, SubmapCloud>> read = ReadSubmapClouds(
-        options->options.shape_context.cloud, FLAGS_input,
-        data.state.pose_graph, progress->Begin("read point clouds"));
+        options->shape_context.cloud, FLAGS_input, data.state.pose_graph,
+        progress->Begin("read point clouds"));
     if (!read.ok()) return read.status();
     clouds = *std::move(read);
   }
   const PlaceMaker make_place =
       options->describes_clouds
-          ? MakeCloudPlaces(options->options.shape_context, clouds)
-          : MakeGridPlaces(stages.place, stages.match, data.grids);
+          ? MakeCloudPlaces(options->shape_context, clouds)
+          : MakeGridPlaces(stages.place, stages.recognition.match, data.grids);
   return MatchTurnedPairs(
-      stages.match, make_place, data.pairs,
+      stages.recognition.match, make_place, data.pairs,
       method == "paper" ? max_clearances : std::vector<double>(), executor,
       progress->Begin(absl::StrCat("match by ", method)));
+}
+
+// Labelled answers of a method, or of a variant of it with fewer features.
+struct Series {
+  std::string name;
+  bool is_variant;
+  std::vector<AnswerLabel> labels;
+};
+
+absl::StatusOr<std::vector<Series>> AnswerByMethods(
+    const Truth& truth, const RandomPairData& data, const Executor& executor,
+    StageProgress* const progress) {
+  const std::vector<double> max_clearances = *MaxClearancesOfFlags();
+  std::vector<Series> series;
+  for (const std::string& method : MethodsOfFlags()) {
+    const absl::StatusOr<std::vector<std::vector<MatchRow>>> answers =
+        Answer(method, data, max_clearances, executor, progress);
+    if (!answers.ok()) return answers.status();
+    for (size_t v = 0; v < answers->size(); ++v) {
+      series.push_back(
+          {v == 0 ? method
+                  : absl::StrFormat("%s %g m", method, max_clearances[v - 1]),
+           v > 0, LabelAnswers(data.truths, truth, (*answers)[v])});
+    }
+  }
+  return series;
 }
 
 Measurement Measure(const std::string& series, const double min_overlap,
@@ -179,7 +207,6 @@ absl::Status MeasureRandomPairs(const Truth& truth,
                                 std::vector<Measurement>* const measurements,
                                 std::vector<NamedCurve>* const curves) {
   const std::vector<double> min_overlaps = *MinOverlapsOfFlags();
-  const std::vector<double> max_clearances = *MaxClearancesOfFlags();
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
   const Executor executor = MakeExecutor(*num_threads);
@@ -187,29 +214,15 @@ absl::Status MeasureRandomPairs(const Truth& truth,
   const absl::StatusOr<RandomPairData> data =
       ReadData(truth, progress.Begin("read"));
   if (!data.ok()) return data.status();
-  struct Series {
-    std::string name;
-    bool is_variant;
-    std::vector<AnswerLabel> labels;
-  };
-  std::vector<Series> series;
-  for (const std::string& method : MethodsOfFlags()) {
-    const absl::StatusOr<std::vector<std::vector<MatchRow>>> answers =
-        Answer(method, *data, max_clearances, executor, &progress);
-    if (!answers.ok()) return answers.status();
-    for (size_t v = 0; v < answers->size(); ++v) {
-      series.push_back(
-          {v == 0 ? method
-                  : absl::StrFormat("%s %g m", method, max_clearances[v - 1]),
-           v > 0, LabelAnswers(data->truths, truth, (*answers)[v])});
-    }
-  }
+  const absl::StatusOr<std::vector<Series>> series =
+      AnswerByMethods(truth, *data, executor, &progress);
+  if (!series.ok()) return series.status();
   for (const double min_overlap : min_overlaps) {
-    for (const auto& [name, is_variant, labels] : series) {
+    for (const auto& [name, is_variant, labels] : *series) {
       measurements->push_back(Measure(name, min_overlap, *data, labels));
     }
   }
-  for (const auto& [name, is_variant, labels] : series) {
+  for (const auto& [name, is_variant, labels] : *series) {
     curves->push_back(
         {name,
          JudgePairs(data->truths, data->pairs, labels, min_overlaps.front(),

@@ -11,7 +11,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/audit/false_constraints.h"
+#include "cartographer_sdf/evaluation/false_constraints.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -59,11 +60,26 @@ absl::Status WriteLabels(const std::string& path, const FalsifiedMap& map) {
   return WriteWholeFile(path, content);
 }
 
+void PrintCounts(const FalsifiedMap& map) {
+  std::map<FalseKind, std::pair<std::set<size_t>, int>> counts;
+  for (const FalseConstraint& label : map.false_constraints) {
+    auto& [pairs, count] = counts[label.kind];
+    pairs.insert(label.pair);
+    ++count;
+  }
+  for (const auto& [kind, count] : counts) {
+    std::cout << absl::StrFormat("%5d constraints of %d pairs: %s\n",
+                                 count.second, count.first.size(),
+                                 FalseKindName(kind));
+  }
+}
+
 absl::Status RunFalsify() {
   const absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError("falsify needs match.method = \"sdf\"");
+  if (options->loop_closing.recognition.match.method != Method::kSdf) {
+    return absl::InvalidArgumentError(
+        "falsify needs loop_closing.recognition.match.method = \"sdf\"");
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
@@ -87,17 +103,7 @@ absl::Status RunFalsify() {
     status = WriteMap(FLAGS_input, FLAGS_output, map->pose_graph);
   }
   if (!status.ok()) return status;
-  std::map<FalseKind, std::pair<std::set<size_t>, int>> counts;
-  for (const FalseConstraint& label : map->false_constraints) {
-    auto& [pairs, count] = counts[label.kind];
-    pairs.insert(label.pair);
-    ++count;
-  }
-  for (const auto& [kind, count] : counts) {
-    std::cout << absl::StrFormat("%5d constraints of %d pairs: %s\n",
-                                 count.second, count.first.size(),
-                                 FalseKindName(kind));
-  }
+  PrintCounts(*map);
   std::cout << FLAGS_output << "\n";
   return absl::OkStatus();
 }

@@ -18,12 +18,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/report/feature_pictures.h"
 #include "cartographer_sdf/report/map_painter.h"
 #include "cartographer_sdf/report/match_map.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/report/submap_pictures.h"
 #include "cartographer_sdf/report/svg_plot.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -223,12 +223,13 @@ absl::StatusOr<MapState> ReadWithGrid(
     const std::string& path, const std::set<SubmapId>& wanted,
     std::map<SubmapId, OccupancyGrid>* const grids,
     const ProgressCallback& on_progress) {
-  absl::StatusOr<MapState> state = ReadMap(
-      path,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        if (wanted.count(id) > 0) grids->emplace(id, grid);
-      },
-      on_progress);
+  absl::StatusOr<MapState> state =
+      ReadMap(path,
+              {[&](const SubmapId& id, const SubmapSummary&,
+                   const OccupancyGrid& grid) {
+                if (wanted.count(id) > 0) grids->emplace(id, grid);
+              }},
+              on_progress);
   if (!state.ok()) return state.status();
   for (const SubmapId& id : wanted) {
     if (grids->count(id) == 0 ||
@@ -240,89 +241,139 @@ absl::StatusOr<MapState> ReadWithGrid(
   return state;
 }
 
-absl::Status DrawMatch(const MethodOptions& method, Output* const output) {
+// Two submaps, and the maps that they are of.
+struct SubmapPair {
+  SubmapId reference_id;
+  SubmapId query_id;
+  OccupancyGrid reference_grid;
+  OccupancyGrid query_grid;
+  MapState map;
+  // None where the query is of the same map.
+  std::optional<MapState> query_map;
+};
+
+absl::StatusOr<SubmapPair> ReadPair(const SubmapId& reference_id,
+                                    const SubmapId& query_id,
+                                    const ProgressCallback& on_progress) {
   const bool has_query = !FLAGS_query.empty();
-  const absl::StatusOr<std::pair<SubmapId, SubmapId>> chosen =
-      ChooseMatch(has_query);
-  if (!chosen.ok()) return chosen.status();
-  const auto& [reference_id, query_id] = *chosen;
-  Progress progress("draw a match");
   std::map<SubmapId, OccupancyGrid> reference_grids, query_grids;
   std::set<SubmapId> wanted = {reference_id};
   if (!has_query) wanted.insert(query_id);
-  const absl::StatusOr<MapState> map =
-      ReadWithGrid(FLAGS_input, wanted, &reference_grids, progress.Callback());
+  absl::StatusOr<MapState> map =
+      ReadWithGrid(FLAGS_input, wanted, &reference_grids, on_progress);
   if (!map.ok()) return map.status();
   std::optional<MapState> query_map;
   if (has_query) {
-    absl::StatusOr<MapState> read = ReadWithGrid(
-        FLAGS_query, {query_id}, &query_grids, progress.Callback());
+    absl::StatusOr<MapState> read =
+        ReadWithGrid(FLAGS_query, {query_id}, &query_grids, on_progress);
     if (!read.ok()) return read.status();
     query_map = *std::move(read);
   }
-  const OccupancyGrid& reference_grid = reference_grids.at(reference_id);
-  const OccupancyGrid& query_grid =
-      (has_query ? query_grids : reference_grids).at(query_id);
-  const LoopClosingOptions& stages = method.options.loop_closing;
+  return SubmapPair{reference_id,
+                    query_id,
+                    reference_grids.at(reference_id),
+                    (has_query ? query_grids : reference_grids).at(query_id),
+                    *std::move(map),
+                    std::move(query_map)};
+}
+
+absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
+                                const SubmapPair& pair) {
   std::optional<Place> reference =
-      DescribePlace(stages.place, reference_id, reference_grid);
+      DescribePlace(stages.place, pair.reference_id, pair.reference_grid);
   std::optional<Place> query =
-      DescribePlace(stages.place, query_id, query_grid);
+      DescribePlace(stages.place, pair.query_id, pair.query_grid);
   std::optional<Match> match;
   if (reference && query) {
-    if (stages.match.method == Method::kSdf) {
-      FindSelfSimilarities(stages.match, &*reference);
-      FindSelfSimilarities(stages.match, &*query);
+    if (stages.recognition.match.method == Method::kSdf) {
+      FindSelfSimilarities(stages.recognition.match, &*reference);
+      FindSelfSimilarities(stages.recognition.match, &*query);
     }
-    match = MatchPlaces(stages.match, *reference, *query);
+    match = MatchPlaces(stages.recognition.match, *reference, *query);
   }
   if (!match) {
-    return absl::NotFoundError(absl::StrCat(
-        "submaps ", reference_id.trajectory, ",", reference_id.index, " and ",
-        query_id.trajectory, ",", query_id.index, " do not match"));
+    return absl::NotFoundError(
+        absl::StrCat("submaps ", pair.reference_id.trajectory, ",",
+                     pair.reference_id.index, " and ", pair.query_id.trajectory,
+                     ",", pair.query_id.index, " do not match"));
   }
+  return *std::move(match);
+}
+
+// Draws all submaps of the map at --input.
+absl::Status PaintInput(const PoseGraph& pose_graph,
+                        const ProgressCallback& on_progress,
+                        MapPainter* const painter) {
+  return ReadMap(FLAGS_input,
+                 {[&](const SubmapId& id, const SubmapSummary&,
+                      const OccupancyGrid& grid) {
+                   const auto pose = pose_graph.submap_poses.find(id);
+                   if (pose != pose_graph.submap_poses.end()) {
+                     painter->AddSubmap(grid, pose->second);
+                   }
+                 }},
+                 on_progress)
+      .status();
+}
+
+// Within one map, both lie where the map has them: the lines show by how much
+// it is off. Another session is put where the match says.
+absl::StatusOr<Picture> DrawPairOnMap(const FieldOptions& field,
+                                      const SubmapPair& pair,
+                                      const Rigid2& T_reference_query,
+                                      const std::vector<PointPair>& inliers,
+                                      const ProgressCallback& on_progress) {
+  const PoseGraph& pose_graph = pair.map.pose_graph;
+  const Rigid2 T_map_reference = pose_graph.submap_poses.at(pair.reference_id);
+  const Rigid2 T_map_query = pair.query_map
+                                 ? T_map_reference * T_reference_query
+                                 : pose_graph.submap_poses.at(pair.query_id);
+  std::vector<PlacedGrid> grids = PlaceGrids(pair.map);
+  std::vector<ShownPath> paths = Paths(pose_graph, Rigid2(), false);
+  if (pair.query_map) {
+    const PoseGraph& query_graph = pair.query_map->pose_graph;
+    const Rigid2 T_map_other =
+        T_map_query * query_graph.submap_poses.at(pair.query_id).Inverse();
+    for (ShownPath& path : Paths(query_graph, T_map_other, true)) {
+      paths.push_back(std::move(path));
+    }
+    grids.push_back({pair.query_grid.geometry, T_map_query});
+  }
+  MapPainter painter(grids, 2 * FLAGS_figure_pixels);
+  const absl::Status status = PaintInput(pose_graph, on_progress, &painter);
+  if (!status.ok()) return status;
+  const ShownMatch shown{
+      {*MakeDistanceField(field, pair.reference_grid), T_map_reference},
+      {*MakeDistanceField(field, pair.query_grid), T_map_query},
+      inliers};
+  return DrawMatchOnMap(painter, paths, shown);
+}
+
+absl::Status DrawMatch(const MethodOptions& method, Output* const output) {
+  const absl::StatusOr<std::pair<SubmapId, SubmapId>> chosen =
+      ChooseMatch(!FLAGS_query.empty());
+  if (!chosen.ok()) return chosen.status();
+  Progress progress("draw a match");
+  const absl::StatusOr<SubmapPair> pair =
+      ReadPair(chosen->first, chosen->second, progress.Callback());
+  if (!pair.ok()) return pair.status();
+  const LoopClosingOptions& stages = method.options.loop_closing;
+  const absl::StatusOr<Match> match = MatchPair(stages, *pair);
+  if (!match.ok()) return match.status();
+  const Rigid2& T_reference_query = match->pair.T_reference_query;
   std::vector<PointPair> inliers;
   for (const auto& inlier : match->inliers) {
     inliers.push_back({inlier.first, inlier.second});
   }
   output->Write("match_pair.png",
-                DrawMatchedPair(reference_grid, query_grid,
-                                match->closure.T_reference_query, inliers,
-                                FLAGS_figure_pixels)
+                DrawMatchedPair(pair->reference_grid, pair->query_grid,
+                                T_reference_query, inliers, FLAGS_figure_pixels)
                     .EncodePng());
-  // Within one map, both lie where the map has them: the lines show by how much
-  // it is off. Another session is put where the match says.
-  const Rigid2 T_map_reference = map->pose_graph.submap_poses.at(reference_id);
-  const Rigid2 T_map_query =
-      has_query ? T_map_reference * match->closure.T_reference_query
-                : map->pose_graph.submap_poses.at(query_id);
-  std::vector<PlacedGrid> grids = PlaceGrids(*map);
-  std::vector<ShownPath> paths = Paths(map->pose_graph, Rigid2(), false);
-  if (has_query) {
-    const Rigid2 T_map_other =
-        T_map_query * query_map->pose_graph.submap_poses.at(query_id).Inverse();
-    for (ShownPath& path : Paths(query_map->pose_graph, T_map_other, true)) {
-      paths.push_back(std::move(path));
-    }
-    grids.push_back({query_grid.geometry, T_map_query});
-  }
-  MapPainter painter(grids, 2 * FLAGS_figure_pixels);
-  const absl::StatusOr<MapState> painted = ReadMap(
-      FLAGS_input,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        const auto pose = map->pose_graph.submap_poses.find(id);
-        if (pose != map->pose_graph.submap_poses.end()) {
-          painter.AddSubmap(grid, pose->second);
-        }
-      },
-      progress.Callback());
-  if (!painted.ok()) return painted.status();
-  const ShownMatch shown{
-      {*MakeDistanceField(stages.place.field, reference_grid), T_map_reference},
-      {*MakeDistanceField(stages.place.field, query_grid), T_map_query},
-      inliers};
-  output->Write("match_map.png",
-                DrawMatchOnMap(painter, paths, shown).EncodePng());
+  const absl::StatusOr<Picture> on_map =
+      DrawPairOnMap(stages.place.field, *pair, T_reference_query, inliers,
+                    progress.Callback());
+  if (!on_map.ok()) return on_map.status();
+  output->Write("match_map.png", on_map->EncodePng());
   return absl::OkStatus();
 }
 
@@ -338,14 +389,15 @@ absl::StatusOr<DescribedGrid> ReadSubmap(const PlaceOptions& options) {
   std::optional<DescribedGrid> best;
   const absl::StatusOr<MapState> state = ReadMap(
       FLAGS_input,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
+      {[&](const SubmapId& id, const SubmapSummary&,
+           const OccupancyGrid& grid) {
         if (wanted && id != *wanted) return;
         std::optional<DescribedGrid> described = DescribeGrid(options, grid);
         if (described && (!best || described->features.features.size() >
                                        best->features.features.size())) {
           best = std::move(described);
         }
-      },
+      }},
       progress.Callback());
   if (!state.ok()) return state.status();
   if (!best) {

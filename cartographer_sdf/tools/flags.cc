@@ -71,6 +71,13 @@ absl::StatusOr<Options> LoadOptionsOfFlags() {
 }
 
 absl::StatusOr<Options> LoadOptionsOfFlags(const std::string& basename) {
+  if (absl::Status status = CheckConfigurationDirectories(); !status.ok()) {
+    return status;
+  }
+  return LoadOptions(ConfigurationDirectories(), basename);
+}
+
+absl::Status CheckConfigurationDirectories() {
   // Else a misspelt one would be passed over for the defaults.
   for (const std::string& directory : GivenDirectories()) {
     std::error_code ignored;
@@ -79,7 +86,11 @@ absl::StatusOr<Options> LoadOptionsOfFlags(const std::string& basename) {
                                               directory, " is no directory"));
     }
   }
-  return LoadOptions(ConfigurationDirectories(), basename);
+  return absl::OkStatus();
+}
+
+ReportRequest ReportRequestOfFlags(const Options& options) {
+  return {FLAGS_report, options.report, FormatOptions(options)};
 }
 
 absl::StatusOr<int> NumThreadsOfFlags() {

@@ -32,11 +32,17 @@ namespace cartographer_sdf {
 // --configuration_directory, then where the program was built and installed.
 [[nodiscard]] std::vector<std::string> ConfigurationDirectories();
 
+// An error where a directory of --configuration_directory does not exist.
+[[nodiscard]] absl::Status CheckConfigurationDirectories();
+
 // As of --configuration_directory and --configuration_basename, or of another
 // file.
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags(
     const std::string& basename);
+
+// As of --report.
+[[nodiscard]] ReportRequest ReportRequestOfFlags(const Options& options);
 
 // As of --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();

@@ -3,13 +3,14 @@
 
 #include <iostream>
 #include <map>
+#include <utility>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/loop_closing/torn_submaps.h"
+#include "cartographer_sdf/closing/torn_submaps.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/map_summary.h"
-#include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
@@ -21,33 +22,55 @@ DEFINE_bool(torn_submaps, false,
 namespace cartographer_sdf {
 namespace {
 
-absl::StatusOr<MapState> ReadWithProgress(const std::string& path) {
-  Progress progress("read");
-  return ReadMap(path, {}, progress.Callback());
-}
+struct MapInfo {
+  MapState state;
+  std::map<SubmapId, Tear> torn_submaps;  // where they were asked for
+};
 
-absl::Status PrintTornSubmaps(const MapState& map) {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
+absl::StatusOr<MapInfo> ReadInfo(const TearOptions& options,
+                                 const int num_threads) {
   StageProgress progress;
-  const absl::StatusOr<std::map<SubmapId, Tear>> torn = FindTornSubmaps(
-      options->loop_closing.tear, FLAGS_input, map.pose_graph,
-      MakeExecutor(*num_threads), progress.Begin("find torn submaps"));
-  if (!torn.ok()) return torn.status();
-  std::cout << absl::StrFormat("\nTorn submaps: %d\n", torn->size());
-  for (const auto& [id, tear] : *torn) {
-    std::cout << "  " << DescribeTear(id, tear) << "\n";
+  std::map<NodeId, PointCloud2> scans;
+  MapVisitor visitor;
+  if (FLAGS_torn_submaps) {
+    visitor.on_point_cloud = [&scans](const NodeId& id, PointCloud2 scan) {
+      scans.emplace(id, std::move(scan));
+    };
   }
-  return absl::OkStatus();
+  absl::StatusOr<MapState> state =
+      ReadMap(FLAGS_input, visitor, progress.Begin("read"));
+  if (!state.ok()) return state.status();
+  MapInfo info{*std::move(state), {}};
+  if (FLAGS_torn_submaps) {
+    info.torn_submaps = FindTornSubmaps(options, info.state.pose_graph, scans,
+                                        MakeExecutor(num_threads),
+                                        progress.Begin("find torn submaps"));
+  }
+  return info;
 }
 
 absl::Status RunInfo() {
-  const absl::StatusOr<MapState> map = ReadWithProgress(FLAGS_input);
-  if (!map.ok()) return map.status();
-  std::cout << DescribeMap(FLAGS_input, *map);
-  return FLAGS_torn_submaps ? PrintTornSubmaps(*map) : absl::OkStatus();
+  TearOptions tear;
+  int num_threads = 1;
+  // Only then: without them, no options are needed.
+  if (FLAGS_torn_submaps) {
+    const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+    if (!options.ok()) return options.status();
+    tear = options->loop_closing.closing.tear;
+    const absl::StatusOr<int> threads = NumThreadsOfFlags();
+    if (!threads.ok()) return threads.status();
+    num_threads = *threads;
+  }
+  const absl::StatusOr<MapInfo> info = ReadInfo(tear, num_threads);
+  if (!info.ok()) return info.status();
+  std::cout << DescribeMap(FLAGS_input, info->state);
+  if (!FLAGS_torn_submaps) return absl::OkStatus();
+  std::cout << absl::StrFormat("\nTorn submaps: %d\n",
+                               info->torn_submaps.size());
+  for (const auto& [id, tear] : info->torn_submaps) {
+    std::cout << "  " << DescribeTear(id, tear) << "\n";
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace

@@ -3,19 +3,19 @@
 
 #include <algorithm>
 #include <iostream>
-#include <map>
 #include <optional>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
+#include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/closing/closure.h"
+#include "cartographer_sdf/closing/selection_between.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/shape_context.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
-#include "cartographer_sdf/loop_closing/described_map.h"
-#include "cartographer_sdf/loop_closing/loop_closing.h"
-#include "cartographer_sdf/loop_closing/neighbours.h"
-#include "cartographer_sdf/loop_closing/selection_between.h"
+#include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/recognition/recognize.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/method_options.h"
 #include "cartographer_sdf/tools/stages.h"
@@ -44,146 +44,156 @@ DEFINE_bool(agree, false,
 
 DEFINE_bool(retrieval, false,
             "Match only those pairs of submaps that an index of all features "
-            "proposes: much faster on large maps, at the price of some pairs.");
+            "proposes, whatever use_retrieval says: much faster on large maps, "
+            "at the price of some pairs.");
 
 namespace cartographer_sdf {
 namespace {
 
-// Takes back the acceptance of rows whose matches the others do not bear out.
-// `query` is null where a map is matched with itself.
-void RefuseInconsistent(const ConsistencyOptions& options, const MapState& map,
-                        const MapState* const query,
-                        const std::vector<Match>& matches,
-                        std::vector<MatchRow>* const rows) {
-  std::vector<LoopClosure> closures;
-  std::vector<MatchRow*> closure_rows;
-  for (size_t k = 0; k < matches.size(); ++k) {
-    if (!(*rows)[k].accepted) continue;
-    closures.push_back(matches[k].closure);
-    closure_rows.push_back(&(*rows)[k]);
+// Options with the flags of this subcommand applied.
+absl::StatusOr<MethodOptions> OptionsOfFlags() {
+  absl::StatusOr<MethodOptions> method = LoadOptionsOfMethod(FLAGS_method);
+  if (!method.ok()) return method.status();
+  RecognitionOptions& recognition = method->options.loop_closing.recognition;
+  if (recognition.match.method != Method::kSdf) {
+    if (FLAGS_agree || FLAGS_alone || !FLAGS_terms.empty()) {
+      return UsageError("--agree, --alone and --terms need method sdf");
+    }
+    recognition.verify_neighbourhoods = false;
   }
-  const std::vector<SelectionResult> results =
-      query != nullptr
-          ? SelectConsistentBetween(options, map, *query, closures)
-          : SelectConsistent(options, OdometryPoses(map), closures);
-  for (size_t k = 0; k < results.size(); ++k) {
-    if (results[k].selection == Selection::kSelected) continue;
-    closure_rows[k]->accepted = false;
-    closure_rows[k]->verdict = SelectionName(results[k].selection);
+  if (FLAGS_alone) recognition.verify_neighbourhoods = false;
+  if (FLAGS_retrieval) recognition.use_retrieval = true;
+  if (!FLAGS_neighbour_terms.empty() && !recognition.verify_neighbourhoods) {
+    return UsageError(
+        "--neighbour_terms needs method sdf, and neighbourhoods that are "
+        "verified");
   }
-}
-
-bool AsksNeighbours(const LoopClosingOptions& options) {
-  return options.ask_neighbours && !FLAGS_alone &&
-         options.match.method == Method::kSdf;
-}
-
-// `query` is null where a map is matched with itself.
-void AskNeighbours(const LoopClosingOptions& options, const DescribedMap& map,
-                   const DescribedMap* const query, const Executor& executor,
-                   const ProgressCallback& on_progress,
-                   std::vector<Match>* const matches) {
-  const std::map<SubmapId, OdometryPose> odometry = OdometryPoses(map.state);
-  const PlacesAlongTrajectories references{&map.places, &odometry};
-  if (query == nullptr) {
-    JudgeByNeighbours(options.neighbourhood, options.match, references,
-                      references, options.min_index_gap, executor, on_progress,
-                      matches);
-    return;
+  if (method->describes_clouds && !FLAGS_places.empty()) {
+    return UsageError("--places needs method sdf or paper");
   }
-  const std::map<SubmapId, OdometryPose> query_odometry =
-      OdometryPoses(query->state);
-  JudgeByNeighbours(options.neighbourhood, options.match, references,
-                    {&query->places, &query_odometry}, std::nullopt, executor,
-                    on_progress, matches);
+  return method;
 }
 
 absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
                                       const std::string& path,
                                       const Executor& executor,
-                                      const ProgressCallback& on_progress) {
+                                      StageClock* const clock) {
+  const ProgressCallback on_progress = clock->Begin("read and describe");
+  if (method.describes_clouds) {
+    return DescribeMapByShapeContexts(method.shape_context, path, executor,
+                                      on_progress);
+  }
   const LoopClosingOptions& stages = method.options.loop_closing;
-  return method.describes_clouds
-             ? DescribeMapByShapeContexts(method.options.shape_context, path,
-                                          executor, on_progress)
-             : DescribeMap(stages.place, stages.match, path, executor,
-                           on_progress);
+  // --places is of the map, not of the query.
+  if (path == FLAGS_input) {
+    return DescribeMapOfFlags(stages, path, executor, PointClouds::kDrop,
+                              on_progress);
+  }
+  return DescribeMap(stages.place, stages.recognition.match, path, executor,
+                     on_progress);
+}
+
+struct MatchedMaps {
+  DescribedMap map;
+  std::optional<DescribedMap>
+      query;  // absent where a map is matched with itself
+  std::vector<Match> matches;
+};
+
+absl::StatusOr<MatchedMaps> MatchMaps(const MethodOptions& method,
+                                      const Executor& executor,
+                                      StageClock* const clock) {
+  const RecognitionOptions& recognition =
+      method.options.loop_closing.recognition;
+  MatchedMaps result;
+  absl::StatusOr<DescribedMap> map =
+      Describe(method, FLAGS_input, executor, clock);
+  if (!map.ok()) return map.status();
+  result.map = *std::move(map);
+  if (FLAGS_query.empty()) {
+    result.matches = RecognizeWithin(
+        recognition, result.map.trajectory_places(), executor, clock);
+    return result;
+  }
+  absl::StatusOr<DescribedMap> query =
+      Describe(method, FLAGS_query, executor, clock);
+  if (!query.ok()) return query.status();
+  result.query = *std::move(query);
+  result.matches =
+      RecognizeBetween(recognition, result.map.trajectory_places(),
+                       result.query->trajectory_places(), executor, clock);
+  return result;
+}
+
+// Takes back the acceptance of rows whose matches the others do not support.
+void RefuseInconsistent(const ConsistencyOptions& options,
+                        const MatchedMaps& maps,
+                        std::vector<MatchRow>* const rows) {
+  std::vector<PairPose> pairs;
+  std::vector<MatchRow*> accepted;
+  for (size_t k = 0; k < rows->size(); ++k) {
+    if (!(*rows)[k].accepted) continue;
+    pairs.push_back(maps.matches[k].pair);
+    accepted.push_back(&(*rows)[k]);
+  }
+  const std::vector<SelectionResult> results =
+      maps.query ? SelectConsistentBetween(options, maps.map.odometry,
+                                           maps.query->odometry, pairs)
+                 : SelectConsistent(options, maps.map.odometry, pairs);
+  for (size_t k = 0; k < results.size(); ++k) {
+    if (results[k].selection == Selection::kSelected) continue;
+    accepted[k]->accepted = false;
+    accepted[k]->verdict =
+        ClosureStatusName(results[k].selection == Selection::kInconsistent
+                              ? ClosureStatus::kInconsistent
+                              : ClosureStatus::kUnsupported);
+  }
+}
+
+// The tables that the flags ask for.
+absl::Status WriteTables(const MethodOptions& method,
+                         const std::vector<Match>& matches,
+                         const std::vector<MatchRow>& rows) {
+  absl::Status status = WriteMatches(FLAGS_output, rows);
+  if (status.ok() && !FLAGS_terms.empty()) {
+    status = WriteScoreTerms(FLAGS_terms, matches);
+  }
+  if (status.ok() && !FLAGS_neighbour_terms.empty()) {
+    status = WriteNeighbourhoodTerms(
+        FLAGS_neighbour_terms,
+        method.options.loop_closing.recognition.neighbourhood, matches);
+  }
+  if (status.ok() && !FLAGS_options_in_force.empty()) {
+    status = WriteWholeFile(FLAGS_options_in_force, FormatOptions(method));
+  }
+  return status;
 }
 
 absl::Status RunMatch() {
-  const absl::StatusOr<MethodOptions> method =
-      LoadOptionsOfMethod(FLAGS_method);
+  const absl::StatusOr<MethodOptions> method = OptionsOfFlags();
   if (!method.ok()) return method.status();
-  if (method->options.loop_closing.match.method != Method::kSdf &&
-      (FLAGS_agree || FLAGS_alone || !FLAGS_terms.empty())) {
-    return UsageError("--agree, --alone and --terms need method sdf");
-  }
-  if (!FLAGS_neighbour_terms.empty() &&
-      !AsksNeighbours(method->options.loop_closing)) {
-    return UsageError(
-        "--neighbour_terms needs method sdf, and neighbours that are asked");
-  }
-  if (method->describes_clouds && !FLAGS_places.empty()) {
-    return UsageError("--places needs method sdf or paper");
-  }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
-  const LoopClosingOptions& stages = method->options.loop_closing;
-  const Executor executor = MakeExecutor(*num_threads);
-  const std::optional<RetrievalOptions> retrieval =
-      FLAGS_retrieval ? std::make_optional(stages.retrieval) : std::nullopt;
   StageProgress progress;
-  const ProgressCallback on_describe = progress.Begin("read and describe");
-  const absl::StatusOr<DescribedMap> map =
-      method->describes_clouds
-          ? Describe(*method, FLAGS_input, executor, on_describe)
-          : DescribeMapOfFlags(method->options, FLAGS_input, executor,
-                               on_describe);
-  if (!map.ok()) return map.status();
-  std::vector<Match> matches;
-  std::optional<DescribedMap> query;
-  if (FLAGS_query.empty()) {
-    matches =
-        MatchWithin(stages.match, retrieval, map->places, stages.min_index_gap,
-                    executor, progress.Begin("match and verify"));
-  } else {
-    absl::StatusOr<DescribedMap> described = Describe(
-        *method, FLAGS_query, executor, progress.Begin("read and describe"));
-    if (!described.ok()) return described.status();
-    query = *std::move(described);
-    matches = MatchBetween(stages.match, retrieval, map->places, query->places,
-                           executor, progress.Begin("match and verify"));
-  }
-  if (AsksNeighbours(stages)) {
-    AskNeighbours(stages, *map, query ? &*query : nullptr, executor,
-                  progress.Begin("ask neighbours"), &matches);
-  }
+  const StageCallback on_stage = progress.Callback();
+  std::vector<std::pair<std::string, double>> stage_seconds;
+  StageClock clock(on_stage, &stage_seconds);
+  const absl::StatusOr<MatchedMaps> maps =
+      MatchMaps(*method, MakeExecutor(*num_threads), &clock);
+  if (!maps.ok()) return maps.status();
+  clock.End();
   std::vector<MatchRow> rows;
-  for (const Match& match : matches) {
+  for (const Match& match : maps->matches) {
     rows.push_back(ToRow(match, match.verdict == Verdict::kAccepted,
                          VerdictName(match.verdict)));
   }
   if (FLAGS_agree) {
-    RefuseInconsistent(stages.consistency, map->state,
-                       query ? &query->state : nullptr, matches, &rows);
+    RefuseInconsistent(method->options.loop_closing.closing.consistency, *maps,
+                       &rows);
   }
-  if (const absl::Status status = WriteMatches(FLAGS_output, rows);
+  if (absl::Status status = WriteTables(*method, maps->matches, rows);
       !status.ok()) {
     return status;
-  }
-  if (!FLAGS_terms.empty()) {
-    const absl::Status status = WriteScoreTerms(FLAGS_terms, matches);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_neighbour_terms.empty()) {
-    const absl::Status status = WriteNeighbourhoodTerms(
-        FLAGS_neighbour_terms, stages.neighbourhood, matches);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_options_in_force.empty()) {
-    const absl::Status status =
-        WriteWholeFile(FLAGS_options_in_force, FormatOptions(method->options));
-    if (!status.ok()) return status;
   }
   const auto num_accepted =
       std::count_if(rows.begin(), rows.end(),

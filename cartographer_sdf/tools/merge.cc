@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include "cartographer_sdf/apps/merge.h"
+
 #include <iostream>
 #include <map>
 #include <set>
@@ -11,12 +13,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
-#include "cartographer_sdf/sessions/merging.h"
+#include "cartographer_sdf/report/session_json.h"
+#include "cartographer_sdf/report/session_report.h"
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/session_json.h"
-#include "cartographer_sdf/tools/session_report.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
@@ -41,15 +43,18 @@ void PrintSummary(const MergingResult& result) {
     }
   }
   for (const SessionLink& link : result.links) {
-    const Relocalization& found = link.relocalization;
+    const Localization& found = link.localization;
     std::cout << absl::StrFormat(
         "  %d and %d: %s, %s\n", link.first + 1, link.second + 1,
-        RelocalizationVerdictName(found.verdict), found.reason);
+        LocalizationVerdictName(found.verdict), found.reason);
   }
-  std::map<Fate, int> fates;
-  for (const ClosureOutcome& outcome : result.closures) ++fates[outcome.fate];
-  for (const auto& [fate, count] : fates) {
-    std::cout << absl::StrFormat("  %5d closures %s\n", count, FateName(fate));
+  std::map<ClosureStatus, int> statuses;
+  for (const Closure& closure : result.closed.closures) {
+    ++statuses[closure.status];
+  }
+  for (const auto& [status, count] : statuses) {
+    std::cout << absl::StrFormat("  %5d closures %s\n", count,
+                                 ClosureStatusName(status));
   }
   std::cout << absl::StrFormat(
       "  %d pairs of submaps overlap, %d of them contradict each other\n",
@@ -59,19 +64,8 @@ void PrintSummary(const MergingResult& result) {
   }
 }
 
-absl::Status RunMerge() {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError(
-        "merge needs match.method = \"sdf\": the number of inliers is no "
-        "verification");
-  }
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
-  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
-  if (!frozen.ok()) return frozen.status();
-  const std::vector<std::string> inputs =
+absl::StatusOr<std::vector<std::string>> InputsOfFlags() {
+  std::vector<std::string> inputs =
       absl::StrSplit(FLAGS_inputs, ',', absl::SkipEmpty());
   if (inputs.size() < 2) {
     return UsageError("--inputs needs two maps at least, separated by commas");
@@ -80,28 +74,51 @@ absl::Status RunMerge() {
     absl::Status status = CheckIsNoInput(input, FLAGS_output);
     if (!status.ok()) return status;
   }
-  StageProgress progress;
-  const absl::StatusOr<MergingResult> result = MergeSessions(
-      options->merging, options->relocalization, options->loop_closing, inputs,
-      *frozen, MakeExecutor(*num_threads), progress.Callback());
-  if (!result.ok()) return result.status();
+  return inputs;
+}
+
+// The files that the flags ask for; a refusal is an error, but one with a
+// report.
+absl::Status WriteFiles(const Options& options, const MergingResult& result,
+                        StageProgress* const progress) {
   absl::Status status;
   if (!FLAGS_result.empty()) {
-    status = WriteWholeFile(FLAGS_result, FormatMerging(*result));
+    status = WriteWholeFile(FLAGS_result, FormatJson(ToJson(result)));
   }
   if (status.ok() && !FLAGS_report.empty()) {
-    status = WriteMergingReport(FLAGS_report, *options, *result,
-                                progress.Begin("report"));
+    status = WriteMergingReport(ReportRequestOfFlags(options), result,
+                                progress->Begin("report"));
   }
-  if (status.ok() && !result->refusal.empty()) {
-    PrintSummary(*result);
-    status = absl::FailedPreconditionError(absl::StrCat(
-        "nothing is written to ", FLAGS_output, ": ", result->refusal));
+  if (!status.ok()) return status;
+  if (!result.refusal.empty()) {
+    PrintSummary(result);
+    return absl::FailedPreconditionError(absl::StrCat(
+        "nothing is written to ", FLAGS_output, ": ", result.refusal));
   }
-  if (status.ok()) {
-    status = WriteJoinedMap(result->parts, result->pose_graph, FLAGS_output,
-                            progress.Begin("write"));
+  return WriteJoinedMap(result.parts, result.closed.pose_graph, FLAGS_output,
+                        progress->Begin("write"));
+}
+
+absl::Status RunMerge() {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  if (absl::Status status = RequireVerification(options->loop_closing, "merge");
+      !status.ok()) {
+    return status;
   }
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
+  if (!frozen.ok()) return frozen.status();
+  const absl::StatusOr<std::vector<std::string>> inputs = InputsOfFlags();
+  if (!inputs.ok()) return inputs.status();
+  StageProgress progress;
+  const absl::StatusOr<MergingResult> result =
+      MergeSessions(options->fold_check, options->localization,
+                    options->scan_places, options->loop_closing, *inputs,
+                    *frozen, MakeExecutor(*num_threads), progress.Callback());
+  if (!result.ok()) return result.status();
+  const absl::Status status = WriteFiles(*options, *result, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);
   std::cout << FLAGS_output << "\n";

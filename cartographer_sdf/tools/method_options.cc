@@ -3,6 +3,8 @@
 
 #include "cartographer_sdf/tools/method_options.h"
 
+#include <utility>
+
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -16,18 +18,38 @@ absl::StatusOr<MethodOptions> LoadOptionsOfMethod(const std::string& method) {
     return UsageError(absl::StrCat(
         "the method must be sdf, paper or shape_context, it is ", method));
   }
-  const bool has_file =
-      !method.empty() && method != "sdf" &&
+  MethodOptions result;
+  result.describes_clouds = method == "shape_context";
+  const bool is_default =
       gflags::GetCommandLineFlagInfoOrDie("configuration_basename").is_default;
-  absl::StatusOr<Options> options =
-      has_file ? LoadOptionsOfFlags(absl::StrCat(method, ".lua"))
-               : LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
+  const std::string basename = is_default && !method.empty() && method != "sdf"
+                                   ? absl::StrCat(method, ".lua")
+                                   : FLAGS_configuration_basename;
+  if (result.describes_clouds) {
+    if (absl::Status status = CheckConfigurationDirectories(); !status.ok()) {
+      return status;
+    }
+    absl::StatusOr<ComparisonOptions> options =
+        LoadComparisonOptions(ConfigurationDirectories(), basename);
+    if (!options.ok()) return options.status();
+    result.options = std::move(options->options);
+    result.shape_context = options->shape_context;
+  } else {
+    absl::StatusOr<Options> options = LoadOptionsOfFlags(basename);
+    if (!options.ok()) return options.status();
+    result.options = *std::move(options);
+  }
   if (!method.empty()) {
-    options->loop_closing.match.method =
+    result.options.loop_closing.recognition.match.method =
         method == "sdf" ? Method::kSdf : Method::kPaper;
   }
-  return MethodOptions{*std::move(options), method == "shape_context"};
+  return result;
+}
+
+std::string FormatOptions(const MethodOptions& options) {
+  return options.describes_clouds ? FormatOptions(ComparisonOptions{
+                                        options.options, options.shape_context})
+                                  : FormatOptions(options.options);
 }
 
 }  // namespace cartographer_sdf

@@ -14,14 +14,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
+#include "cartographer_sdf/apps/merge.h"
+#include "cartographer_sdf/apps/session.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
-#include "cartographer_sdf/sessions/merging.h"
-#include "cartographer_sdf/sessions/relocalization.h"
+#include "cartographer_sdf/report/session_json.h"
+#include "cartographer_sdf/report/session_report.h"
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/session_json.h"
-#include "cartographer_sdf/tools/session_report.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
@@ -102,43 +102,37 @@ double Duration(const std::map<NodeId, Node>& nodes) {
 absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
                            const Executor& executor,
                            StageProgress* const progress) {
-  const absl::StatusOr<MapState> query = ReadMap(FLAGS_query);
+  const absl::StatusOr<MapWithScans> query = ReadMapWithScans(FLAGS_query);
   if (!query.ok()) return query.status();
-  const double latest_start =
-      std::max(0., Duration(query->pose_graph.nodes) - FLAGS_first_seconds);
+  const double latest_start = std::max(
+      0., Duration(query->state.pose_graph.nodes) - FLAGS_first_seconds);
   const ProgressCallback on_progress = progress->Begin("windows");
-  std::vector<std::string> results;
+  Json results = Json::array();
   int num_localized = 0;
   for (int k = 0; k < FLAGS_num_starts; ++k) {
     const double start =
         FLAGS_num_starts == 1 ? 0. : latest_start * k / (FLAGS_num_starts - 1);
-    const absl::StatusOr<ScanMap> window = DescribeScans(
-        options.relocalization.scan_places, options.loop_closing.place,
-        options.loop_closing.match, FLAGS_query, *query,
-        TimeWindow{start, FLAGS_first_seconds}, executor);
-    if (!window.ok()) return window.status();
-    const Relocalization result =
-        Relocalize(options.relocalization, options.loop_closing, map,
-                   window->map, executor);
+    const ScanMap window = DescribeScans(
+        options.scan_places, options.loop_closing.place,
+        options.loop_closing.recognition.match, query->state,
+        query->point_clouds, TimeWindow{start, FLAGS_first_seconds}, executor);
+    const Localization result = LocalizeIn(
+        options.localization, options.loop_closing, map, window.map, executor);
     num_localized += result.T_map_query.has_value();
     std::cout << absl::StrFormat("%7.1f s: %s, %s\n", start,
-                                 RelocalizationVerdictName(result.verdict),
+                                 LocalizationVerdictName(result.verdict),
                                  result.reason);
-    results.push_back(
-        absl::StrFormat("{\"start_seconds\": %.9g, \"result\": %s}", start,
-                        FormatRelocalization(result)));
+    results.push_back({{"start_seconds", start}, {"result", ToJson(result)}});
     on_progress((k + 1.) / FLAGS_num_starts);
   }
   std::cout << num_localized << " of " << FLAGS_num_starts
             << " windows were localized\n";
   if (FLAGS_result.empty()) return absl::OkStatus();
-  return WriteWholeFile(
-      FLAGS_result, absl::StrCat("[", absl::StrJoin(results, ",\n"), "]\n"));
+  return WriteWholeFile(FLAGS_result, FormatJson(results));
 }
 
 absl::Status WriteCombinedMap(const Options& options, const Session& map,
-                              const Session& query,
-                              const Relocalization& result,
+                              const Session& query, const Localization& result,
                               const Executor& executor,
                               StageProgress* const progress) {
   if (!result.T_map_query) {
@@ -147,25 +141,25 @@ absl::Status WriteCombinedMap(const Options& options, const Session& map,
                      " was not localized in ", map.path, ": ", result.reason));
   }
   const absl::StatusOr<MergingResult> merged =
-      AttachQuery(options.merging, options.loop_closing, map, query, result,
+      AttachQuery(options.fold_check, options.loop_closing, map, query, result,
                   executor, progress->Callback());
   if (!merged.ok()) return merged.status();
   if (!merged->refusal.empty()) {
     return absl::FailedPreconditionError(absl::StrCat(
         "nothing is written to ", FLAGS_output, ": ", merged->refusal));
   }
-  return WriteJoinedMap(merged->parts, merged->pose_graph, FLAGS_output,
+  return WriteJoinedMap(merged->parts, merged->closed.pose_graph, FLAGS_output,
                         progress->Begin("write"));
 }
 
-void PrintSummary(const Relocalization& result) {
+void PrintSummary(const Localization& result) {
   if (result.T_map_query) {
     const Rigid2& pose = *result.T_map_query;
     std::cout << absl::StrFormat(
         "localized: x %.3f m, y %.3f m, yaw %.2f deg\n", pose.translation().x(),
         pose.translation().y(), pose.rotation() * 180. / M_PI);
   } else {
-    std::cout << "not localized: " << RelocalizationVerdictName(result.verdict)
+    std::cout << "not localized: " << LocalizationVerdictName(result.verdict)
               << "\n";
   }
   std::cout << "  " << result.reason << "\n";
@@ -182,66 +176,92 @@ void PrintSummary(const Relocalization& result) {
   }
 }
 
+void PrintPaths() {
+  for (const std::string& path : {FLAGS_result, FLAGS_output}) {
+    if (!path.empty()) std::cout << path << "\n";
+  }
+  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
+}
+
+// The files that the flags ask for.
+absl::Status WriteFiles(const Options& options, const Session& map,
+                        const Session& query, const Localization& result,
+                        const Executor& executor,
+                        StageProgress* const progress) {
+  absl::Status status;
+  if (!FLAGS_result.empty()) {
+    status = WriteWholeFile(FLAGS_result, FormatJson(ToJson(result)));
+  }
+  if (status.ok() && !FLAGS_report.empty()) {
+    status =
+        WriteRelocalizationReport(ReportRequestOfFlags(options), map, query,
+                                  result, progress->Begin("report"));
+  }
+  if (status.ok() && !FLAGS_output.empty()) {
+    status = WriteCombinedMap(options, map, query, result, executor, progress);
+  }
+  return status;
+}
+
+// The query as a whole, or in one window.
+absl::Status RunOnce(const Options& options,
+                     const std::optional<TimeWindow>& window, DescribedMap map,
+                     const Executor& executor, StageProgress* const progress) {
+  const absl::StatusOr<Session> query = DescribeSession(
+      options.loop_closing, options.scan_places, FLAGS_query, window, executor,
+      progress->Begin("read and describe the query"));
+  if (!query.ok()) return query.status();
+  LocalizationOptions localization = options.localization;
+  if (!FLAGS_output.empty()) {
+    // Every match is of use.
+    localization.num_first_places = std::numeric_limits<int>::max();
+    localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
+  }
+  const Localization result =
+      LocalizeIn(localization, options.loop_closing, map, query->map, executor,
+                 progress->Callback());
+  const Session map_session{FLAGS_map, std::move(map), {}};
+  const absl::Status status =
+      WriteFiles(options, map_session, *query, result, executor, progress);
+  if (!status.ok()) return status;
+  PrintSummary(result);
+  PrintPaths();
+  return absl::OkStatus();
+}
+
+absl::Status CheckInputs() {
+  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
+    absl::Status status = CheckIsNoInput(input, FLAGS_output);
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
 absl::Status RunRelocalize() {
   const absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
-  if (options->loop_closing.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError(
-        "relocalize needs match.method = \"sdf\": the number of inliers is no "
-        "verification");
+  if (absl::Status status =
+          RequireVerification(options->loop_closing, "relocalize");
+      !status.ok()) {
+    return status;
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
   if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
-  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
-    absl::Status status = CheckIsNoInput(input, FLAGS_output);
-    if (!status.ok()) return status;
-  }
+  if (absl::Status status = CheckInputs(); !status.ok()) return status;
   const Executor executor = MakeExecutor(*num_threads);
   StageProgress progress;
-  absl::StatusOr<DescribedMap> map =
-      DescribeMapOfFlags(*options, FLAGS_map, executor,
-                         progress.Begin("read and describe the map"));
+  absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
+      options->loop_closing, FLAGS_map, executor,
+      FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
+      progress.Begin("read and describe the map"));
   if (!map.ok()) return map.status();
   if (IsGiven("num_starts")) {
     return RunManyStarts(*options, *map, executor, &progress);
   }
-  const absl::StatusOr<Session> query = DescribeSession(
-      options->relocalization, options->loop_closing, FLAGS_query, *window,
-      executor, progress.Begin("read and describe the query"));
-  if (!query.ok()) return query.status();
-  RelocalizationOptions relocalization = options->relocalization;
-  if (!FLAGS_output.empty()) {
-    // Every match is of use.
-    relocalization.num_first_places = std::numeric_limits<int>::max();
-    relocalization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
-  }
-  const Relocalization result =
-      Relocalize(relocalization, options->loop_closing, *map, query->map,
-                 executor, progress.Callback());
-  const Session map_session{FLAGS_map, *std::move(map), {}};
-  absl::Status status;
-  if (!FLAGS_result.empty()) {
-    status = WriteWholeFile(FLAGS_result, FormatRelocalization(result));
-  }
-  if (status.ok() && !FLAGS_report.empty()) {
-    status =
-        WriteRelocalizationReport(FLAGS_report, *options, map_session, *query,
-                                  result, progress.Begin("report"));
-  }
-  if (status.ok() && !FLAGS_output.empty()) {
-    status = WriteCombinedMap(*options, map_session, *query, result, executor,
-                              &progress);
-  }
-  if (!status.ok()) return status;
-  PrintSummary(result);
-  for (const std::string& path : {FLAGS_result, FLAGS_output}) {
-    if (!path.empty()) std::cout << path << "\n";
-  }
-  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
-  return absl::OkStatus();
+  return RunOnce(*options, *window, *std::move(map), executor, &progress);
 }
 
 }  // namespace

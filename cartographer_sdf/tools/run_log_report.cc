@@ -14,8 +14,8 @@
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/report/html_report.h"
+#include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_painter.h"
-#include "cartographer_sdf/tools/json.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -38,7 +38,7 @@ int NumInjected(const LogRunResult& result) {
   return static_cast<int>(
       std::count_if(result.closures.begin(), result.closures.end(),
                     [](const ClosureRecord& record) {
-                      return record.fate == ClosureFate::kInjected;
+                      return record.status == ClosureStatus::kInGraph;
                     }));
 }
 
@@ -52,125 +52,105 @@ const NodeMoment* FirstConnected(const LogRunResult& result) {
 
 double BeginOf(const LogRunResult& result) { return result.nodes.front().time; }
 
-Json PoseJson(const Rigid2& pose) {
-  return Json::Object({{"x", pose.translation().x()},
-                       {"y", pose.translation().y()},
-                       {"yaw", pose.rotation()}});
-}
-
-Json SubmapJson(const SubmapId& id) {
-  return Json::Object({{"trajectory", id.trajectory}, {"index", id.index}});
-}
-
 Json LatencyJson(const std::vector<double>& seconds) {
   double sum = 0.;
   for (const double value : seconds) sum += value;
   const auto count = static_cast<double>(std::max<size_t>(1, seconds.size()));
-  return Json::Object({{"mean", kMilliseconds * sum / count},
-                       {"median", kMilliseconds * Quantile(seconds, 0.5)},
-                       {"p99", kMilliseconds * Quantile(seconds, 0.99)},
-                       {"max", kMilliseconds * Quantile(seconds, 1.)}});
+  return {{"mean", kMilliseconds * sum / count},
+          {"median", kMilliseconds * Quantile(seconds, 0.5)},
+          {"p99", kMilliseconds * Quantile(seconds, 0.99)},
+          {"max", kMilliseconds * Quantile(seconds, 1.)}};
 }
 
 Json SummaryJson(const LiveSummary& summary) {
-  std::vector<std::pair<std::string, Json>> matches;
-  for (const auto& [verdict, count] : summary.num_matches) {
-    matches.emplace_back(verdict, count);
+  return {{"places", summary.num_places},
+          {"submaps", summary.num_submaps},
+          {"queries", summary.num_queries},
+          {"candidates", summary.num_candidates},
+          {"matches", summary.num_matches},
+          {"closures", summary.num_closures},
+          {"injected", summary.num_injected},
+          {"constraints", summary.num_constraints},
+          {"worker_cpu_seconds", summary.worker_cpu_seconds},
+          {"callbacks", summary.num_callbacks},
+          {"callback_milliseconds",
+           {{"mean", kMilliseconds * summary.callback_mean_seconds},
+            {"p99", kMilliseconds * summary.callback_p99_seconds},
+            {"max", kMilliseconds * summary.callback_max_seconds}}}};
+}
+
+Json ClosuresJson(const std::vector<ClosureRecord>& records) {
+  Json json = Json::array();
+  for (const ClosureRecord& record : records) {
+    const PairPose& pair = record.pair;
+    json.push_back(
+        {{"reference", ToJson(pair.reference)},
+         {"query", ToJson(pair.query)},
+         {"T_reference_query", ToJson(pair.T_reference_query)},
+         {"score", pair.score},
+         {"status", ClosureStatusName(record.status)},
+         {"constraints", record.num_constraints},
+         {"inliers", record.num_inliers},
+         {"overlap_area", record.evidence.overlap_area},
+         {"hit_ratio", record.evidence.HitRatio()},
+         {"contradiction_ratio", record.evidence.ContradictionRatio()}});
   }
-  return Json::Object(
-      {{"places", summary.num_places},
-       {"submaps", summary.num_submaps},
-       {"queries", summary.num_queries},
-       {"candidates", summary.num_candidates},
-       {"matches", Json::Object(std::move(matches))},
-       {"closures", summary.num_closures},
-       {"injected", summary.num_injected},
-       {"constraints", summary.num_constraints},
-       {"worker_cpu_seconds", summary.worker_cpu_seconds},
-       {"callbacks", static_cast<double>(summary.num_callbacks)},
-       {"callback_milliseconds",
-        Json::Object(
-            {{"mean", kMilliseconds * summary.callback_mean_seconds},
-             {"p99", kMilliseconds * summary.callback_p99_seconds},
-             {"max", kMilliseconds * summary.callback_max_seconds}})}});
+  return json;
 }
 
-Json ClosureJson(const ClosureRecord& record) {
-  const LoopClosure& closure = record.closure;
-  return Json::Object(
-      {{"reference", SubmapJson(closure.reference)},
-       {"query", SubmapJson(closure.query)},
-       {"T_reference_query", PoseJson(closure.T_reference_query)},
-       {"score", closure.score},
-       {"fate", ClosureFateName(record.fate)},
-       {"constraints", record.num_constraints},
-       {"inliers", closure.evidence.inliers},
-       {"overlap_area", closure.evidence.overlap_area},
-       {"hit_ratio", closure.evidence.hit_ratio},
-       {"contradiction_ratio", closure.evidence.contradiction_ratio}});
+Json LocalizationsJson(const std::vector<LocalizationMoment>& moments,
+                       const double begin) {
+  Json json = Json::array();
+  for (const LocalizationMoment& moment : moments) {
+    const LocalizationResult& result = moment.result;
+    json.push_back({{"trajectory", result.trajectory_id},
+                    {"localized", result.localized},
+                    {"verdict", LocalizationVerdictName(result.verdict)},
+                    {"reason", result.reason},
+                    {"time", FromHostTime(result.time)},
+                    {"T_map_node", ToJson(result.T_map_node)},
+                    {"T_map_local", ToJson(result.T_map_local)},
+                    {"score", result.score},
+                    {"runner_up_score", result.runner_up_score},
+                    {"reference", ToJson(result.reference)},
+                    {"queries", result.num_queries},
+                    {"seconds_driven", moment.time - begin},
+                    {"meters_driven", moment.distance},
+                    {"process_cpu_seconds", moment.cpu_seconds},
+                    {"query_cpu_seconds", result.cpu_seconds}});
+  }
+  return json;
 }
 
-Json LocalizationJson(const LocalizationMoment& moment, const double begin) {
-  const LocalizationResult& result = moment.result;
-  return Json::Object({{"trajectory", result.trajectory_id},
-                       {"located", result.located},
-                       {"reason", LocalizationReasonName(result.reason)},
-                       {"time", FromHostTime(result.time)},
-                       {"T_map_node", result.T_map_node.has_value()
-                                          ? PoseJson(*result.T_map_node)
-                                          : Json::Null()},
-                       {"T_map_local", result.T_map_local.has_value()
-                                           ? PoseJson(*result.T_map_local)
-                                           : Json::Null()},
-                       {"score", result.score},
-                       {"runner_up_score", result.runner_up_score},
-                       {"reference", result.reference.has_value()
-                                         ? SubmapJson(*result.reference)
-                                         : Json::Null()},
-                       {"queries", result.num_queries},
-                       {"seconds_driven", moment.time - begin},
-                       {"meters_driven", moment.distance},
-                       {"process_cpu_seconds", moment.cpu_seconds},
-                       {"query_cpu_seconds", result.cpu_seconds}});
+Json ConnectedJson(const LogRunResult& result) {
+  const NodeMoment* const connected = FirstConnected(result);
+  if (connected == nullptr) return nullptr;
+  return {{"seconds_driven", connected->time - BeginOf(result)},
+          {"meters_driven", connected->distance},
+          {"process_cpu_seconds", connected->cpu_seconds}};
 }
 
 Json RunJson(const std::string& log, const LogRunOptions& options,
              const LogRunResult& result) {
-  const double begin = BeginOf(result);
-  std::vector<Json> closures;
-  for (const ClosureRecord& record : result.closures) {
-    closures.push_back(ClosureJson(record));
-  }
-  std::vector<Json> localizations;
-  for (const LocalizationMoment& moment : result.localizations) {
-    localizations.push_back(LocalizationJson(moment, begin));
-  }
-  const NodeMoment* const connected = FirstConnected(result);
-  return Json::Object(
-      {{"log", log},
-       {"map",
-        options.map_path.has_value() ? Json(*options.map_path) : Json::Null()},
-       {"scans", result.num_scans},
-       {"nodes", static_cast<int>(result.nodes.size())},
-       {"trajectory", result.trajectory_id},
-       {"seconds", result.duration},
-       {"meters", result.distance},
-       {"wall_seconds", result.wall_seconds},
-       {"cpu_seconds", result.cpu_seconds},
-       {"final_wall_seconds", result.final_wall_seconds},
-       {"final_cpu_seconds", result.final_cpu_seconds},
-       {"max_delay_seconds", result.max_delay_seconds},
-       {"add_sensor_data_milliseconds", LatencyJson(result.sensor_seconds)},
-       {"connected",
-        connected == nullptr
-            ? Json::Null()
-            : Json::Object({{"seconds_driven", connected->time - begin},
-                            {"meters_driven", connected->distance},
-                            {"process_cpu_seconds", connected->cpu_seconds}})},
-       {"localizations", Json::Array(std::move(localizations))},
-       {"searcher", result.summary.has_value() ? SummaryJson(*result.summary)
-                                               : Json::Null()},
-       {"closures", Json::Array(std::move(closures))}});
+  return {{"log", log},
+          {"map", ToJson(options.map_path)},
+          {"scans", result.num_scans},
+          {"nodes", result.nodes.size()},
+          {"trajectory", result.trajectory_id},
+          {"seconds", result.duration},
+          {"meters", result.distance},
+          {"wall_seconds", result.wall_seconds},
+          {"cpu_seconds", result.cpu_seconds},
+          {"final_wall_seconds", result.final_wall_seconds},
+          {"final_cpu_seconds", result.final_cpu_seconds},
+          {"max_delay_seconds", result.max_delay_seconds},
+          {"add_sensor_data_milliseconds", LatencyJson(result.sensor_seconds)},
+          {"connected", ConnectedJson(result)},
+          {"localizations",
+           LocalizationsJson(result.localizations, BeginOf(result))},
+          {"searcher",
+           result.summary.has_value() ? SummaryJson(*result.summary) : Json()},
+          {"closures", ClosuresJson(result.closures)}};
 }
 
 std::string NodesCsv(const LogRunResult& result) {
@@ -185,8 +165,33 @@ std::string NodesCsv(const LogRunResult& result) {
   return csv;
 }
 
-// The map at the end, with the paths of its trajectories and the closures
-// between the origins of their submaps.
+void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
+               Picture* const picture) {
+  std::map<int, std::vector<Eigen::Vector2d>> paths;
+  for (const auto& [id, node] : pose_graph.nodes) {
+    paths[id.trajectory].push_back(node.T_map_node.translation());
+  }
+  for (const auto& [trajectory, path] : paths) {
+    DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
+  }
+}
+
+// Those that were injected, between the origins of their submaps.
+void DrawClosures(const std::vector<ClosureRecord>& closures,
+                  const std::map<SubmapId, Rigid2>& submap_poses,
+                  const PixelFrame& frame, Picture* const picture) {
+  for (const ClosureRecord& record : closures) {
+    const auto reference = submap_poses.find(record.pair.reference);
+    const auto query = submap_poses.find(record.pair.query);
+    if (record.status == ClosureStatus::kInGraph &&
+        reference != submap_poses.end() && query != submap_poses.end()) {
+      DrawLink(reference->second.translation(), query->second.translation(),
+               frame, kClosureColor, picture);
+    }
+  }
+}
+
+// The map at the end, with the paths of its trajectories and the closures.
 absl::StatusOr<ReportedPicture> PaintMap(
     const std::string& map, const std::vector<ClosureRecord>& closures) {
   const absl::StatusOr<MapState> state = ReadMap(map);
@@ -200,43 +205,29 @@ absl::StatusOr<ReportedPicture> PaintMap(
     }
   }
   MapPainter painter(grids, kMaxPixels);
-  const absl::StatusOr<MapState> read = ReadMap(
-      map,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        const auto pose = pose_graph.submap_poses.find(id);
-        if (pose != pose_graph.submap_poses.end()) {
-          painter.AddSubmap(grid, pose->second);
-        }
-      });
+  const absl::StatusOr<MapState> read =
+      ReadMap(map, {[&](const SubmapId& id, const SubmapSummary&,
+                        const OccupancyGrid& grid) {
+                const auto pose = pose_graph.submap_poses.find(id);
+                if (pose != pose_graph.submap_poses.end()) {
+                  painter.AddSubmap(grid, pose->second);
+                }
+              }});
   if (!read.ok()) return read.status();
   Picture picture = painter.Paint();
   DrawMetricGrid(painter.frame(), &picture);
-  std::map<int, std::vector<Eigen::Vector2d>> paths;
-  for (const auto& [id, node] : pose_graph.nodes) {
-    paths[id.trajectory].push_back(node.T_map_node.translation());
-  }
-  for (const auto& [trajectory, path] : paths) {
-    DrawTrajectory(path, painter.frame(), CategoryColor(trajectory), &picture);
-  }
-  for (const ClosureRecord& record : closures) {
-    const auto reference =
-        pose_graph.submap_poses.find(record.closure.reference);
-    const auto query = pose_graph.submap_poses.find(record.closure.query);
-    if (record.fate == ClosureFate::kInjected &&
-        reference != pose_graph.submap_poses.end() &&
-        query != pose_graph.submap_poses.end()) {
-      DrawLink(reference->second.translation(), query->second.translation(),
-               painter.frame(), kClosureColor, &picture);
-    }
-  }
+  DrawPaths(pose_graph, painter.frame(), &picture);
+  DrawClosures(closures, pose_graph.submap_poses, painter.frame(), &picture);
   DrawScaleBar(painter.frame(), &picture);
   return ReportedPicture{"The map at the end; closures of the searcher in red",
                          picture.EncodePng()};
 }
 
-std::vector<std::pair<std::string, std::string>> SummaryRows(
-    const LogRunResult& result) {
-  std::vector<std::pair<std::string, std::string>> rows = {
+// Names and what is to be said of them.
+using Rows = std::vector<std::pair<std::string, std::string>>;
+
+Rows RunRows(const LogRunResult& result) {
+  Rows rows = {
       {"Recording",
        absl::StrFormat("%d scans, %.0f s, %.1f m", result.num_scans,
                        result.duration, result.distance)},
@@ -254,38 +245,52 @@ std::vector<std::pair<std::string, std::string>> SummaryRows(
         "Behind real time",
         absl::StrFormat("%.2f s at most", result.max_delay_seconds));
   }
+  return rows;
+}
+
+Rows SearcherRows(const LiveSummary& summary, const int num_injected) {
+  return {{"Searcher",
+           absl::StrFormat("%d submaps, %d queries, %d closures, %d of them in "
+                           "the pose graph; CPU %.1f s",
+                           summary.num_submaps, summary.num_queries,
+                           summary.num_closures, num_injected,
+                           summary.worker_cpu_seconds)},
+          {"Added to AddSensorData",
+           absl::StrFormat("mean %.4f ms, 99 %% %.4f ms, max %.4f ms",
+                           kMilliseconds * summary.callback_mean_seconds,
+                           kMilliseconds * summary.callback_p99_seconds,
+                           kMilliseconds * summary.callback_max_seconds)}};
+}
+
+std::string LocalizationText(const LocalizationMoment& moment,
+                             const double begin) {
+  const LocalizationResult& found = moment.result;
+  std::string text = LocalizationVerdictName(found.verdict);
+  if (found.localized && found.T_map_node.has_value()) {
+    absl::StrAppendFormat(&text, " at (%.2f, %.2f) m, %.1f deg",
+                          found.T_map_node->translation().x(),
+                          found.T_map_node->translation().y(),
+                          kDegrees * found.T_map_node->rotation());
+  }
+  absl::StrAppendFormat(
+      &text,
+      " after %.1f m, %.1f s and %d queries of %.2f s CPU; score %.1f, "
+      "runner-up %.1f",
+      moment.distance, moment.time - begin, found.num_queries,
+      found.cpu_seconds, found.score, found.runner_up_score);
+  return text;
+}
+
+Rows SummaryRows(const LogRunResult& result) {
+  Rows rows = RunRows(result);
   if (result.summary.has_value()) {
-    const LiveSummary& summary = *result.summary;
-    rows.emplace_back(
-        "Searcher",
-        absl::StrFormat("%d submaps, %d queries, %d closures, %d of them in "
-                        "the pose graph; CPU %.1f s",
-                        summary.num_submaps, summary.num_queries,
-                        summary.num_closures, NumInjected(result),
-                        summary.worker_cpu_seconds));
-    rows.emplace_back(
-        "Added to AddSensorData",
-        absl::StrFormat("mean %.4f ms, 99 %% %.4f ms, max %.4f ms",
-                        kMilliseconds * summary.callback_mean_seconds,
-                        kMilliseconds * summary.callback_p99_seconds,
-                        kMilliseconds * summary.callback_max_seconds));
+    for (auto& row : SearcherRows(*result.summary, NumInjected(result))) {
+      rows.push_back(std::move(row));
+    }
   }
   for (const LocalizationMoment& moment : result.localizations) {
-    const LocalizationResult& found = moment.result;
-    std::string text = LocalizationReasonName(found.reason);
-    if (found.located && found.T_map_node.has_value()) {
-      absl::StrAppendFormat(&text, " at (%.2f, %.2f) m, %.1f deg",
-                            found.T_map_node->translation().x(),
-                            found.T_map_node->translation().y(),
-                            kDegrees * found.T_map_node->rotation());
-    }
-    absl::StrAppendFormat(
-        &text,
-        " after %.1f m, %.1f s and %d queries of %.2f s CPU; score %.1f, "
-        "runner-up %.1f",
-        moment.distance, moment.time - BeginOf(result), found.num_queries,
-        found.cpu_seconds, found.score, found.runner_up_score);
-    rows.emplace_back("Localisation", text);
+    rows.emplace_back("Localisation",
+                      LocalizationText(moment, BeginOf(result)));
   }
   if (const NodeMoment* const connected = FirstConnected(result);
       connected != nullptr) {
@@ -301,6 +306,31 @@ std::vector<std::pair<std::string, std::string>> SummaryRows(
 std::vector<double> InMilliseconds(std::vector<double> seconds) {
   for (double& value : seconds) value *= kMilliseconds;
   return seconds;
+}
+
+HistogramPlot LatencyHistogram(const std::vector<double>& seconds) {
+  HistogramPlot latency;
+  latency.title = "Time of AddSensorData";
+  latency.x.label = "ms";
+  const double longest = kMilliseconds * Quantile(seconds, 0.99);
+  latency.x.range = {0., std::max(longest, 1e-3)};
+  latency.series = {{"calls", InMilliseconds(seconds)}};
+  return latency;
+}
+
+std::vector<ReportedClosure> ReportedClosures(
+    const std::vector<ClosureRecord>& records) {
+  std::vector<ReportedClosure> closures;
+  for (const ClosureRecord& record : records) {
+    ReportedClosure reported;
+    reported.match.pair = record.pair;
+    reported.match.evidence = record.evidence;
+    reported.match.inliers.resize(static_cast<size_t>(record.num_inliers));
+    reported.accepted = record.status == ClosureStatus::kInGraph;
+    reported.reason = ClosureStatusName(record.status);
+    closures.push_back(std::move(reported));
+  }
+  return closures;
 }
 
 }  // namespace
@@ -327,34 +357,20 @@ absl::Status WriteRunReport(const std::string& directory,
                          : "Cartographer alone.";
   content.summary = SummaryRows(result);
   content.maps.push_back(*std::move(picture));
-  for (const ClosureRecord& record : result.closures) {
-    ReportedClosure reported;
-    reported.closure = record.closure;
-    reported.accepted = record.fate == ClosureFate::kInjected;
-    reported.reason = ClosureFateName(record.fate);
-    content.closures.push_back(std::move(reported));
-  }
-  HistogramPlot latency;
-  latency.title = "Time of AddSensorData";
-  latency.x.label = "ms";
-  const double longest = kMilliseconds * Quantile(result.sensor_seconds, 0.99);
-  latency.x.range = {0., std::max(longest, 1e-3)};
-  latency.series = {{"calls", InMilliseconds(result.sensor_seconds)}};
-  content.histograms.push_back(std::move(latency));
+  content.closures = ReportedClosures(result.closures);
+  content.histograms.push_back(LatencyHistogram(result.sensor_seconds));
   content.options = FormatLiveOptions(options.live);
   // Makes the directory, too.
-  if (absl::Status status = WriteReport(directory, content, ReportOptions());
-      !status.ok()) {
-    return status;
-  }
+  absl::Status status = WriteReport(directory, content, ReportOptions());
   const std::filesystem::path path(directory);
-  if (absl::Status status =
-          WriteWholeFile((path / "nodes.csv").string(), NodesCsv(result));
-      !status.ok()) {
-    return status;
+  if (status.ok()) {
+    status = WriteWholeFile((path / "nodes.csv").string(), NodesCsv(result));
   }
-  return WriteWholeFile((path / "run.json").string(),
-                        RunJson(log, options, result).Format());
+  if (status.ok()) {
+    status = WriteWholeFile((path / "run.json").string(),
+                            FormatJson(RunJson(log, options, result)));
+  }
+  return status;
 }
 
 }  // namespace cartographer_sdf

@@ -3,7 +3,6 @@
 
 #include "cartographer_sdf/tools/simulate.h"
 
-#include <algorithm>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -22,9 +21,6 @@ absl::Status RunSimulate(const SimulateArguments& arguments,
   options.drive.length = arguments.length;
   options.lidar = arguments.lidar;
   options.people = arguments.people;
-  // What a lidar cannot see it must not call free.
-  options.grid.empty_beam_length =
-      std::min(options.grid.empty_beam_length, options.lidar.max_range);
   const absl::StatusOr<FloorPlan> plan =
       arguments.plan_path
           ? ReadPgm(*arguments.plan_path, arguments.plan_resolution)

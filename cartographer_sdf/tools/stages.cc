@@ -7,17 +7,8 @@
 #include <utility>
 
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/parallel_for.h"
 
 namespace cartographer_sdf {
-
-Executor MakeExecutor(const int num_threads) {
-  return
-      [num_threads](const size_t n, const std::function<void(size_t)>& task) {
-        ParallelFor(static_cast<int>(n), num_threads,
-                    [&task](const int k) { task(static_cast<size_t>(k)); });
-      };
-}
 
 StageCallback StageProgress::Callback() {
   return [this](const std::string& stage) { return Begin(stage); };
@@ -31,15 +22,17 @@ ProgressCallback StageProgress::Begin(const std::string& stage) {
 }
 
 absl::StatusOr<DescribedMap> DescribeMapOfFlags(
-    const Options& options, const std::string& path, const Executor& executor,
+    const LoopClosingOptions& options, const std::string& path,
+    const Executor& executor, const PointClouds point_clouds,
     const ProgressCallback& on_progress) {
-  const LoopClosingOptions& stages = options.loop_closing;
+  const MatchOptions& match = options.recognition.match;
   if (FLAGS_places.empty()) {
-    return DescribeMap(stages.place, stages.match, path, executor, on_progress);
+    return DescribeMap(options.place, match, path, executor, on_progress,
+                       point_clouds);
   }
-  absl::StatusOr<RememberedMap> remembered =
-      RememberMap(stages.place, stages.match, FormatOptions(options), path,
-                  FLAGS_places, executor, on_progress);
+  absl::StatusOr<RememberedMap> remembered = RememberMap(
+      options.place, match, FormatPlaceOptions(options.place, match), path,
+      FLAGS_places, executor, on_progress, point_clouds);
   if (!remembered.ok()) return remembered.status();
   if (!remembered->complaint.empty()) {
     std::cerr << "--places: " << remembered->complaint << "\n";
@@ -47,21 +40,13 @@ absl::StatusOr<DescribedMap> DescribeMapOfFlags(
   return std::move(remembered->map);
 }
 
-MatchRow ToRow(const Match& match, const bool accepted,
-               const std::string& verdict) {
-  const LoopClosure& closure = match.closure;
-  MatchRow row;
-  row.reference = closure.reference;
-  row.query = closure.query;
-  row.accepted = accepted;
-  row.score = closure.score;
-  row.T_reference_query = closure.T_reference_query;
-  row.verdict = verdict;
-  row.inliers = closure.evidence.inliers;
-  row.overlap = closure.evidence.overlap;
-  row.hit_ratio = closure.evidence.hit_ratio;
-  row.contradiction_ratio = closure.evidence.contradiction_ratio;
-  return row;
+absl::Status RequireVerification(const LoopClosingOptions& options,
+                                 const std::string& subcommand) {
+  if (options.recognition.match.method == Method::kSdf) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      subcommand +
+      " needs match.method = \"sdf\": the number of inliers is no "
+      "verification");
 }
 
 }  // namespace cartographer_sdf

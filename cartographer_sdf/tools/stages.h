@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the subcommands that work on maps share: threads, progress, tables.
+// What the subcommands that work on maps share: progress lines, places.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_STAGES_H_
 #define CARTOGRAPHER_SDF_TOOLS_STAGES_H_
@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/config/options.h"
-#include "cartographer_sdf/evaluation/match_table.h"
-#include "cartographer_sdf/loop_closing/loop_closing.h"
+#include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/tools/progress.h"
 
 namespace cartographer_sdf {
-
-[[nodiscard]] Executor MakeExecutor(int num_threads);
 
 // A progress line for one stage after the other.
 class StageProgress {
@@ -31,15 +30,16 @@ class StageProgress {
   std::unique_ptr<Progress> progress_;
 };
 
-// The places of a map: from the file of --places, if it is given, or described,
-// and then left there. A file of places is bound to all options: more than they
-// depend on, but never too few.
+// The map with its places: from the file of --places, if it is given, or
+// described, and then left there.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapOfFlags(
-    const Options& options, const std::string& path, const Executor& executor,
+    const LoopClosingOptions& options, const std::string& path,
+    const Executor& executor, PointClouds point_clouds,
     const ProgressCallback& on_progress);
 
-[[nodiscard]] MatchRow ToRow(const Match& match, bool accepted,
-                             const std::string& verdict);
+// An error where the configured method verifies nothing.
+[[nodiscard]] absl::Status RequireVerification(
+    const LoopClosingOptions& options, const std::string& subcommand);
 
 }  // namespace cartographer_sdf
 

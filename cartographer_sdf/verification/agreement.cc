@@ -53,10 +53,11 @@ class CellLookup {
 template <typename Visitor>
 void VisitCells(const SurfaceModel& model,
                 const std::vector<SurfacePoint>& points,
-                const Rigid2& T_model_points, const size_t max_num_points,
+                const Rigid2& T_model_points, const int max_num_points,
                 const Visitor& visit) {
   const CellLookup lookup(model, T_model_points);
-  const size_t count = std::min(max_num_points, points.size());
+  const size_t count =
+      std::min(static_cast<size_t>(max_num_points), points.size());
   std::array<const SurfaceCell*, kChunkSize> cells;
   for (size_t begin = 0; begin < count; begin += kChunkSize) {
     const size_t size = std::min(kChunkSize, count - begin);
@@ -130,18 +131,18 @@ std::string Validate(const AgreementOptions& options) {
     return "hit_distance_meters must be positive and not above "
            "contradiction_distance_meters";
   }
+  if (options.max_num_points < 1) return "max_num_points must be positive";
   return "";
 }
 
 DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const SurfaceModel& model,
                                    const std::vector<SurfacePoint>& points,
-                                   const Rigid2& T_model_points,
-                                   const size_t max_num_points) {
+                                   const Rigid2& T_model_points) {
   const double hit = options.hit_distance_meters;
   const double contradiction = options.contradiction_distance_meters;
   DirectedAgreement result;
-  VisitCells(model, points, T_model_points, max_num_points,
+  VisitCells(model, points, T_model_points, options.max_num_points,
              [&](const SurfacePoint& point, const SurfaceCell& cell) {
                const double weight = Weight(options, point);
                const double distance = 1e-3 * std::abs(cell.distance);
@@ -162,20 +163,11 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
   return result;
 }
 
-DirectedAgreement MeasureAgreement(const AgreementOptions& options,
-                                   const SurfaceModel& model,
-                                   const SurfaceModel& points,
-                                   const Rigid2& T_model_points,
-                                   const size_t max_num_points) {
-  return MeasureAgreement(options, model, points.walls, T_model_points,
-                          max_num_points);
-}
-
 TileAgreement MeasureTileAgreement(const AgreementOptions& options,
                                    const SurfaceModel& reference,
                                    const SurfaceModel& query,
-                                   const Rigid2& T_reference_query,
-                                   const size_t max_num_points) {
+                                   const Rigid2& T_reference_query) {
+  const size_t max_num_points = static_cast<size_t>(options.max_num_points);
   Tiles tiles(reference);
   const auto add_all =
       [&](const SurfaceModel& model, const SurfaceModel& points,
@@ -185,7 +177,7 @@ TileAgreement MeasureTileAgreement(const AgreementOptions& options,
         const double stands_for = static_cast<double>(points.walls.size()) /
                                   static_cast<double>(count) *
                                   points.geometry.resolution;
-        VisitCells(model, points.walls, T_model_points, max_num_points,
+        VisitCells(model, points.walls, T_model_points, options.max_num_points,
                    [&](const SurfacePoint& point, const SurfaceCell& cell) {
                      const bool is_hit = 1e-3 * std::abs(cell.distance) <=
                                          options.hit_distance_meters;
@@ -212,6 +204,22 @@ double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
   return count * query.area_per_observed_point *
          static_cast<double>(query.observed_points.size()) /
          static_cast<double>(num_points);
+}
+
+std::optional<Eigen::Vector2d> OverlapCentroid(
+    const SurfaceModel& reference, const SurfaceModel& query,
+    const Rigid2& T_reference_query) {
+  const CellLookup lookup(reference, T_reference_query);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (const Eigen::Vector2d& point : query.observed_points) {
+    const SurfaceCell* const cell = lookup.Find(point);
+    if (cell == nullptr || !cell->observed) continue;
+    sum += point;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector2d(sum / count);
 }
 
 }  // namespace cartographer_sdf

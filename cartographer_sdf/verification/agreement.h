@@ -7,11 +7,12 @@
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_AGREEMENT_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_AGREEMENT_H_
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
-#include "cartographer_sdf/verification/surface_model.h"
+#include "cartographer_sdf/place/surface_model.h"
 
 namespace cartographer_sdf {
 
@@ -21,17 +22,18 @@ struct AgreementOptions {
   // A wall point in the other's free space, farther than this from its walls,
   // is a contradiction [m]. Between the two it is neither.
   double contradiction_distance_meters = 0.25;
-  // Whether points and cells count by how surely they are occupied or free.
+  // Whether points and cells count by how certainly they are occupied or free.
   bool weigh_by_certainty = true;
+  // Wall points used of each submap. Larger: more precise, slower.
+  int max_num_points = 2000;
 };
 [[nodiscard]] std::string Validate(const AgreementOptions& options);
 
-// Sums over the wall points of one submap, weighted by how surely they are
-// occupied.
+// Sums over the wall points of one submap, each weighted by its certainty.
 struct DirectedAgreement {
   double num_points = 0.;  // within what the other submap has observed
   double hits = 0.;
-  // Weighted too by how surely the other's cell is free.
+  // Weighted also by the certainty that the other's cell is free.
   double contradictions = 0.;
   double squared_distance = 0.;  // of the hits [m^2]
 
@@ -43,40 +45,35 @@ struct DirectedAgreement {
   }
 };
 
-// The first `max_num_points` wall points of `points`, taken by T_model_points
-// into `model`.
+// Of points in a frame of their own, taken by T_model_points into `model`.
 [[nodiscard]] DirectedAgreement MeasureAgreement(
     const AgreementOptions& options, const SurfaceModel& model,
-    const SurfaceModel& points, const Rigid2& T_model_points,
-    size_t max_num_points);
+    const std::vector<SurfacePoint>& points, const Rigid2& T_model_points);
 
-// The same for points that are not a submap's, such as a scan's.
-[[nodiscard]] DirectedAgreement MeasureAgreement(
-    const AgreementOptions& options, const SurfaceModel& model,
-    const std::vector<SurfacePoint>& points, const Rigid2& T_model_points,
-    size_t max_num_points);
-
-// Wall points crowd: a long wall, or a cupboard scanned from near, is many
-// points and yet one fact. On squares of 2 m each place counts once.
+// A long wall, or a cupboard scanned from near, is many points and yet one
+// fact. On tiles of 2 m each stretch of wall counts once.
 struct TileAgreement {
-  // Squares that hold wall of one submap within what the other has observed;
-  // those that hold less than some 0.4 m of it in part.
+  // Tiles that hold wall of one submap within what the other has observed; a
+  // tile with less than some 0.4 m of wall counts in part.
   double num_tiles = 0.;
-  // Mean of the squares' hit ratios.
+  // Mean of the tiles' hit ratios.
   double mean_hit_ratio = 0.;
 };
 
-// By the wall points of both submaps, at most `max_num_points` of each. Squares
-// are those of the reference frame.
+// By the wall points of both submaps, on tiles of the reference frame.
 [[nodiscard]] TileAgreement MeasureTileAgreement(
     const AgreementOptions& options, const SurfaceModel& reference,
-    const SurfaceModel& query, const Rigid2& T_reference_query,
-    size_t max_num_points);
+    const SurfaceModel& query, const Rigid2& T_reference_query);
 
-// Area observed by both [m^2], by a sample of the query's observed points.
+// Area observed by both [m^2], from a sample of the query's observed points.
 [[nodiscard]] double OverlapArea(const SurfaceModel& reference,
                                  const SurfaceModel& query,
                                  const Rigid2& T_reference_query);
+
+// Its centroid in the query frame [m]; none where nothing is observed by both.
+[[nodiscard]] std::optional<Eigen::Vector2d> OverlapCentroid(
+    const SurfaceModel& reference, const SurfaceModel& query,
+    const Rigid2& T_reference_query);
 
 }  // namespace cartographer_sdf
 

@@ -95,9 +95,9 @@ void AddBackward(const SurfaceModel& field,
 }
 
 template <typename AddResiduals>
-std::optional<Registration> GaussNewton(const RegistrationOptions& options,
-                                        const Rigid2& guess,
-                                        const AddResiduals& add_residuals) {
+std::optional<Rigid2> GaussNewton(const RegistrationOptions& options,
+                                  const Rigid2& guess,
+                                  const AddResiduals& add_residuals) {
   CHECK_EQ(Validate(options), "");
   Rigid2 pose = guess;
   const double shrink = options.num_iterations > 1
@@ -123,15 +123,7 @@ std::optional<Registration> GaussNewton(const RegistrationOptions& options,
     pose =
         Rigid2(pose.translation() + step.head<2>(), pose.rotation() + step.z());
   }
-  NormalEquations equations;
-  add_residuals(pose, options.final_kernel_scale_meters, 1, &equations);
-  if (equations.sum_of_weights < kMinSumOfWeights) return std::nullopt;
-  const Eigen::Matrix2d scatter =
-      equations.A.topLeftCorner<2, 2>() / equations.sum_of_weights;
-  const double min_eigenvalue =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()[0];
-  return Registration{pose, equations.A, min_eigenvalue,
-                      equations.sum_of_weights};
+  return pose;
 }
 
 // The first of the points are a fair sample of all.
@@ -139,6 +131,17 @@ size_t Count(const RegistrationOptions& options,
              const std::vector<SurfacePoint>& points, const int divisor) {
   return std::min(points.size(), static_cast<size_t>(options.max_num_points)) /
          divisor;
+}
+
+// Walls of each submap against the field of the other.
+void AddBothWays(const RegistrationOptions& options,
+                 const SurfaceModel& reference, const SurfaceModel& query,
+                 const Rigid2& T_reference_query, const double scale,
+                 const int divisor, NormalEquations* const equations) {
+  AddForward(reference, query.walls, Count(options, query.walls, divisor),
+             T_reference_query, scale, equations);
+  AddBackward(query, reference.walls, Count(options, reference.walls, divisor),
+              T_reference_query, scale, equations);
 }
 
 }  // namespace
@@ -159,25 +162,36 @@ std::string Validate(const RegistrationOptions& options) {
   return "";
 }
 
-std::optional<Registration> RegisterSubmaps(
-    const RegistrationOptions& options, const SurfaceModel& reference,
-    const SurfaceModel& query, const Rigid2& guess_T_reference_query) {
+std::optional<Rigid2> RegisterSubmaps(const RegistrationOptions& options,
+                                      const SurfaceModel& reference,
+                                      const SurfaceModel& query,
+                                      const Rigid2& guess_T_reference_query) {
   return GaussNewton(options, guess_T_reference_query,
                      [&](const Rigid2& pose, const double scale,
                          const int divisor, NormalEquations* const equations) {
-                       AddForward(reference, query.walls,
-                                  Count(options, query.walls, divisor), pose,
-                                  scale, equations);
-                       AddBackward(query, reference.walls,
-                                   Count(options, reference.walls, divisor),
-                                   pose, scale, equations);
+                       AddBothWays(options, reference, query, pose, scale,
+                                   divisor, equations);
                      });
 }
 
-std::optional<Registration> RegisterPoints(
-    const RegistrationOptions& options, const SurfaceModel& reference,
-    const std::vector<SurfacePoint>& points,
-    const Rigid2& guess_T_reference_points, const PosePrior& prior) {
+Eigen::Matrix2d NormalScatter(const RegistrationOptions& options,
+                              const SurfaceModel& reference,
+                              const SurfaceModel& query,
+                              const Rigid2& T_reference_query) {
+  NormalEquations equations;
+  AddBothWays(options, reference, query, T_reference_query,
+              options.final_kernel_scale_meters, 1, &equations);
+  if (equations.sum_of_weights < kMinSumOfWeights) {
+    return Eigen::Matrix2d::Zero();
+  }
+  return equations.A.topLeftCorner<2, 2>() / equations.sum_of_weights;
+}
+
+std::optional<Rigid2> RegisterPoints(const RegistrationOptions& options,
+                                     const SurfaceModel& reference,
+                                     const std::vector<SurfacePoint>& points,
+                                     const Rigid2& guess_T_reference_points,
+                                     const PosePrior& prior) {
   CHECK_GT(prior.translation_sigma, 0.);
   CHECK_GT(prior.rotation_sigma, 0.);
   const double per_meter = prior.residual_sigma / prior.translation_sigma;

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
-#include "cartographer_sdf/verification/surface_model.h"
+#include "cartographer_sdf/place/surface_model.h"
 
 namespace cartographer_sdf {
 
@@ -29,42 +29,36 @@ struct RegistrationOptions {
 };
 [[nodiscard]] std::string Validate(const RegistrationOptions& options);
 
-struct Registration {
-  Rigid2 T_reference_query;
-  // Sum of the robustly weighted outer products of the residuals' Jacobians in
-  // (x, y, yaw): the inverse covariance for residuals of unit variance. The
-  // pose is perturbed as translation in the reference frame, and rotation
-  // about the origin of the query frame.
-  Eigen::Matrix3d normal_matrix;
-  // The same for the translation alone and for weights that sum to one: the
-  // scatter of the normals of the walls that match. Its smaller eigenvalue is
-  // near 0 where one could slide along, 0.5 where walls face all ways. Walls
-  // that slant in the grid have steps, which raise it in a bare corridor to as
-  // much as 0.2.
-  double min_scatter_eigenvalue;
-  double sum_of_weights;
-};
-
-// Query walls to the reference's field and reference walls to the query's.
-// None where too few points fall into the other's field, or the normal
-// equations are singular.
-[[nodiscard]] std::optional<Registration> RegisterSubmaps(
+// The refined pose (reference <- query), from query walls to the reference's
+// field and reference walls to the query's. None where too few points fall into
+// the other's field, or the normal equations are singular.
+[[nodiscard]] std::optional<Rigid2> RegisterSubmaps(
     const RegistrationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& guess_T_reference_query);
 
-// Points (a scan, in its node's frame) to the reference's field. The guess is
-// held by a prior of these standard deviations [m], [rad] against residuals of
-// `residual_sigma` [m], so that it stays where the walls leave it free. The
-// normal matrix includes the prior.
+// The refined pose of points (a scan, in its node's frame) in the reference's
+// field. A prior with these standard deviations [m], [rad], against residuals
+// of `residual_sigma` [m], holds the guess where the walls leave it free.
 struct PosePrior {
   double translation_sigma;
   double rotation_sigma;
   double residual_sigma = 0.05;
 };
-[[nodiscard]] std::optional<Registration> RegisterPoints(
+[[nodiscard]] std::optional<Rigid2> RegisterPoints(
     const RegistrationOptions& options, const SurfaceModel& reference,
     const std::vector<SurfacePoint>& points,
     const Rigid2& guess_T_reference_points, const PosePrior& prior);
+
+// Scatter of the normals of the walls that match at a pose, in the reference
+// frame, with weights that sum to one. Its smaller eigenvalue is near 0 where
+// one could slide along, 0.5 where walls face all ways; its eigenvector is the
+// direction in which the walls constrain the pose least. Walls that slant in
+// the grid have steps, which raise the eigenvalue in a bare corridor to as much
+// as 0.2. Zero where too few walls match to fix a pose.
+[[nodiscard]] Eigen::Matrix2d NormalScatter(const RegistrationOptions& options,
+                                            const SurfaceModel& reference,
+                                            const SurfaceModel& query,
+                                            const Rigid2& T_reference_query);
 
 }  // namespace cartographer_sdf
 

@@ -54,7 +54,7 @@ LiveOptions LoadOptionsOrDie() {
 
 void LogLocalization(const LocalizationResult& result) {
   LOG(INFO) << "Trajectory " << result.trajectory_id << ": "
-            << LocalizationReasonName(result.reason) << ", score "
+            << LocalizationVerdictName(result.verdict) << ", score "
             << result.score << ", runner-up " << result.runner_up_score
             << ", after " << result.distance_driven << " m";
 }

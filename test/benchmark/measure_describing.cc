@@ -20,7 +20,7 @@
 #include "cartographer_sdf/feature/keypoint.h"
 #include "cartographer_sdf/field/distance_field.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/tools/allocator.h"
 
 namespace cartographer_sdf {
@@ -67,7 +67,7 @@ int Measure(const std::string& map) {
           DescribeKeypoints(options.descriptor, *field, smoothed, keypoints);
     });
   };
-  const absl::StatusOr<MapState> state = ReadMap(map, describe, {});
+  const absl::StatusOr<MapState> state = ReadMap(map, {describe});
   if (!state.ok()) {
     std::cerr << "measure_describing: " << state.status().message() << "\n";
     return EXIT_FAILURE;

@@ -20,7 +20,7 @@
 #include "cartographer_sdf/evaluation/match_score.h"
 #include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/report/picture.h"
 #include "cartographer_sdf/report/submap_pictures.h"
 
@@ -73,16 +73,16 @@ absl::Status Measure(const std::string& map_path, const std::string& truth_path,
   std::map<SubmapId, ObservedPoints> observed;
   std::map<SubmapId, Place> places;
   size_t num_features = 0;
-  const absl::StatusOr<MapState> state = ReadMap(
-      map_path,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        observed[id] = ThinnedObservedPoints(grid);
-        std::optional<Place> place =
-            DescribePlace(options->loop_closing.place, id, grid);
-        if (!place) return;
-        num_features += place->features.features.size();
-        places[id] = *std::move(place);
-      });
+  const absl::StatusOr<MapState> state =
+      ReadMap(map_path, {[&](const SubmapId& id, const SubmapSummary&,
+                             const OccupancyGrid& grid) {
+                observed[id] = ThinnedObservedPoints(grid);
+                std::optional<Place> place =
+                    DescribePlace(options->loop_closing.place, id, grid);
+                if (!place) return;
+                num_features += place->features.features.size();
+                places[id] = *std::move(place);
+              }});
   if (!state.ok()) return state.status();
   if (!picture_path.empty()) {
     const auto drawn = places.find({0, drawn_index});

@@ -4,7 +4,7 @@
 // Time that describing a submap of 800 x 800 cells takes, stage by stage.
 
 #include "benchmark/benchmark.h"
-#include "cartographer_sdf/recognition/place.h"
+#include "cartographer_sdf/place/place.h"
 #include "test/testing/world.h"
 
 namespace cartographer_sdf {

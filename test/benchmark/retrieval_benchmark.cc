@@ -8,7 +8,7 @@
 #include <random>
 
 #include "benchmark/benchmark.h"
-#include "cartographer_sdf/retrieval/place_index.h"
+#include "cartographer_sdf/matching/place_index.h"
 #include "test/testing/feature_sets.h"
 
 namespace cartographer_sdf {

@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::lua_dictionary_test {
 namespace {
 
 using ::testing::AllOf;
@@ -247,4 +247,4 @@ TEST_F(LuaDictionaryTest, OffersNothingDangerous) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::lua_dictionary_test

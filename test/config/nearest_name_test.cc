@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::nearest_name_test {
 namespace {
 
 TEST(NearestNameTest, FindsMisspellings) {
@@ -29,4 +29,4 @@ TEST(NearestNameTest, TakesTheFirstOnTies) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::nearest_name_test

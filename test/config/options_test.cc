@@ -4,7 +4,9 @@
 #include "cartographer_sdf/config/options.h"
 
 #include <array>
+#include <fstream>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cartographer_sdf/config/option_keys.h"
@@ -13,7 +15,7 @@
 #include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::options_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -26,12 +28,57 @@ TEST(OptionsTest, ShippedFileEqualsTheDefaults) {
   EXPECT_EQ(FormatOptions(*options), FormatOptions(Options()));
 }
 
+// The number of options that a file of configuration_files/ assigns; a failure
+// for each that has no comment above it, its neighbours or its table.
+int CountDocumentedOptions(const std::string& basename) {
+  std::ifstream file(std::string(kTestConfigurationDirectory) + "/" + basename);
+  EXPECT_TRUE(file.good()) << basename;
+  int count = 0;
+  bool has_comment = false;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const size_t begin = line.find_first_not_of(' ');
+    if (begin == std::string::npos || line[begin] == '}') {
+      has_comment = false;
+    } else if (line.compare(begin, 2, "--") == 0) {
+      has_comment = true;
+    } else if (line.compare(begin, 6, "local ") != 0 &&
+               line.find(" = ") != std::string::npos && line.back() != '{') {
+      EXPECT_TRUE(has_comment) << basename << ":" << number;
+      ++count;
+    }
+  }
+  return count;
+}
+
+struct LeafCounter {
+  int count = 0;
+  template <typename T>
+  void operator()(const char*, T& option) {
+    if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
+      VisitOptions(*this, option);
+    } else {
+      ++count;
+    }
+  }
+};
+
+TEST(OptionsTest, EachIsInOneShippedFileAndDocumented) {
+  Options options;
+  LeafCounter leaves;
+  VisitOptions(leaves, options);
+  const int num_for_users = CountDocumentedOptions(kBasename);
+  EXPECT_EQ(num_for_users + CountDocumentedOptions("sdf_advanced_options.lua"),
+            leaves.count);
+  EXPECT_LE(num_for_users, 20);
+}
+
 TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
   const auto options = LoadOptions({kTestConfigurationDirectory}, "paper.lua");
   ASSERT_TRUE(options.ok()) << options.status();
   Options paper;
   paper.loop_closing.place = PaperPlaceOptions();
-  paper.loop_closing.match = PaperMatchOptions();
+  paper.loop_closing.recognition.match = PaperMatchOptions();
   EXPECT_EQ(FormatOptions(*options), FormatOptions(paper));
 }
 
@@ -46,14 +93,14 @@ struct OneWeight {
 };
 
 TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
-  Agreement agreement;
-  agreement.query_in_reference = {100., 90., 2., 0.};
-  agreement.reference_in_query = {50., 40., 2., 0.};
-  agreement.overlap_area = 49.;
-  agreement.overlap = 0.7;
-  agreement.tiles = {16., 0.95};
-  agreement.min_scatter_eigenvalue = 0.16;
-  const auto terms = ScoreTerms(agreement, 0.1);
+  PairEvidence evidence;
+  evidence.query_in_reference = {100., 90., 2., 0.};
+  evidence.reference_in_query = {50., 40., 2., 0.};
+  evidence.overlap_area = 49.;
+  evidence.overlap = 0.7;
+  evidence.tiles = {16., 0.95};
+  evidence.normal_scatter = Eigen::Vector2d(0.16, 0.84).asDiagonal();
+  const auto terms = ScoreTerms(evidence, 0.1);
   const auto names = ScoreTermNames();
   for (int k = 0; k != kNumScoreTerms; ++k) {
     ScoreWeights weights;
@@ -62,7 +109,7 @@ TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
     ASSERT_EQ(visit.keys.size(), kNumScoreTerms + 1u);
     EXPECT_EQ(names[k], visit.keys[k]);
     EXPECT_EQ(visit.keys.back(), "bias");
-    EXPECT_EQ(Score(weights, agreement, 0.1), terms[k]) << names[k];
+    EXPECT_EQ(Score(weights, evidence, 0.1), terms[k]) << names[k];
   }
 }
 
@@ -91,4 +138,4 @@ TEST(OptionsTest, UsersOverrideTheShippedFile) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::options_test

@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::curvature_clusters_test {
 namespace {
 
 constexpr double kSpacing = 0.05;  // between points of a wall [m]
@@ -120,4 +120,4 @@ TEST(CurvatureClustersTest, RefusesOptionsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::curvature_clusters_test

@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::error_statistics_test {
 namespace {
 
 TEST(SummarizeTest, InterpolatesBetweenSortedValues) {
@@ -36,4 +36,4 @@ TEST(SummarizeTest, OfOneIsThatOne) {
 TEST(SummarizeTest, NoneOfNone) { EXPECT_FALSE(Summarize({}).has_value()); }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::error_statistics_test

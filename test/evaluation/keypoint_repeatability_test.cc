@@ -7,7 +7,7 @@
 #include "test/testing/ascii_grid.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::keypoint_repeatability_test {
 namespace {
 
 using OfKind = KeypointRepeatability::OfKind;
@@ -49,4 +49,4 @@ TEST(KeypointRepeatabilityTest, TurnsAndWrongPosesAreTold) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::keypoint_repeatability_test

@@ -5,41 +5,37 @@
 
 #include <string>
 
-#include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::learning_tables_test {
 namespace {
 
 using ::testing::HasSubstr;
 
 Match VerifiedMatch() {
-  Match match{};
-  match.closure.reference = {0, 3};
-  match.closure.query = {1, 2};
-  Verification verification{};
-  verification.information = Eigen::Matrix3d::Identity();
-  verification.score = 4.5;
-  verification.margin = 0.125;
-  verification.agreement.query_in_reference = {100., 90., 2., 0.};
-  verification.agreement.reference_in_query = {50., 40., 2., 0.};
-  verification.agreement.overlap_area = 49.;
-  verification.agreement.overlap = 0.7;
-  verification.agreement.tiles = {16., 0.95};
-  verification.agreement.min_scatter_eigenvalue = 0.16;
-  match.verification = verification;
+  Match match;
+  match.pair.reference = {0, 3};
+  match.pair.query = {1, 2};
+  match.pair.score = 4.5;
+  match.pair_score = 4.5;
+  match.margin = 0.125;
+  match.evidence.query_in_reference = {100., 90., 2., 0.};
+  match.evidence.reference_in_query = {50., 40., 2., 0.};
+  match.evidence.overlap_area = 49.;
+  match.evidence.overlap = 0.7;
+  match.evidence.tiles = {16., 0.95};
+  match.evidence.normal_scatter = Eigen::Vector2d(0.16, 0.84).asDiagonal();
   return match;
 }
 
 TEST(WriteScoreTermsTest, WritesWhatTheScoreIsMadeOf) {
   const testing::TemporaryDirectory directory;
-  Match unverified{};
-  unverified.closure.query = {0, 7};
   const Match match = VerifiedMatch();
   const std::string path = directory.File("terms.csv");
-  ASSERT_TRUE(WriteScoreTerms(path, {unverified, match}).ok());
+  ASSERT_TRUE(WriteScoreTerms(path, {match}).ok());
   std::vector<CsvColumn> columns = {{"reference_trajectory", CsvType::kInteger},
                                     {"reference_index", CsvType::kInteger},
                                     {"query_trajectory", CsvType::kInteger},
@@ -57,8 +53,7 @@ TEST(WriteScoreTermsTest, WritesWhatTheScoreIsMadeOf) {
   EXPECT_EQ(row.Integer(2), 1);
   EXPECT_EQ(row.Integer(3), 2);
   EXPECT_EQ(row.Number(4), 4.5);
-  const auto terms =
-      ScoreTerms(match.verification->agreement, match.verification->margin);
+  const auto terms = ScoreTerms(match.evidence, match.margin);
   for (int k = 0; k != kNumScoreTerms; ++k) {
     // Nine digits; terms are below 10.
     EXPECT_NEAR(row.Number(5 + k), terms[k], 1e-8) << columns[5 + k].name;
@@ -66,15 +61,15 @@ TEST(WriteScoreTermsTest, WritesWhatTheScoreIsMadeOf) {
   }
 }
 
-TEST(WriteNeighbourhoodTermsTest, LeavesOutWhatNobodyAskedAbout) {
+TEST(WriteNeighbourhoodTermsTest, LeavesOutWhatWasNotMeasured) {
   const testing::TemporaryDirectory directory;
   const Match alone = VerifiedMatch();
   Match hopeless = VerifiedMatch();
   hopeless.neighbourhood = NeighbourhoodEvidence{};
-  hopeless.verification->score = -6.;
+  hopeless.pair_score = -6.;
   Match asked = VerifiedMatch();
   asked.neighbourhood = NeighbourhoodEvidence{};
-  asked.closure.score = 2.5;
+  asked.pair.score = 2.5;
   ASSERT_TRUE(WriteNeighbourhoodTerms(directory.File("terms.csv"),
                                       NeighbourhoodOptions(),
                                       {alone, hopeless, asked})
@@ -118,4 +113,4 @@ TEST(LearningTablesTest, NamePathsThatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::learning_tables_test

@@ -14,7 +14,7 @@
 #include "test/testing/shared_data.h"
 #include "test/testing/synthetic_pose_graph.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::match_score_test {
 namespace {
 
 using ::cartographer_sdf::testing::NormalNumbers;
@@ -355,10 +355,10 @@ class RealPairs {
   explicit RealPairs(const std::string& name) {
     const absl::StatusOr<MapState> state =
         ReadMap(SharedDataPath(name + ".pbstream"),
-                [this](const SubmapId& id, const SubmapSummary&,
-                       const OccupancyGrid& grid) {
+                {[this](const SubmapId& id, const SubmapSummary&,
+                        const OccupancyGrid& grid) {
                   submaps[id] = ThinnedObservedPoints(grid);
-                });
+                }});
     const absl::StatusOr<Truth> read = ReadTruth(
         SharedDataPath(name.substr(0, name.find("_open")) + ".truth.csv"));
     EXPECT_TRUE(state.ok()) << state.status();
@@ -394,4 +394,4 @@ TEST(RealPairsTest, CountsThePairsOfTwoSessions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::match_score_test

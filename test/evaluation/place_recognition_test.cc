@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::place_recognition_test {
 namespace {
 
 class PlaceRecognitionTest : public ::testing::Test {
@@ -75,4 +75,4 @@ TEST_F(PlaceRecognitionTest, OfNothingAllIsZero) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::place_recognition_test

@@ -7,7 +7,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::precision_recall_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -105,4 +105,4 @@ TEST(PrecisionRecallTest, WritesCurves) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::precision_recall_test

@@ -11,7 +11,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::random_pairs_test {
 namespace {
 
 using ::cartographer_sdf::testing::IsPoseNear;
@@ -222,4 +222,4 @@ TEST_F(JudgePairsTest, TheOverlapThatMakesAMatchIsAnArgument) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::random_pairs_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "gmock/gmock.h"
@@ -14,7 +14,7 @@
 #include "test/testing/shared_data.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::relations_test {
 namespace {
 
 using ::cartographer_sdf::testing::TemporaryDirectory;
@@ -214,4 +214,4 @@ TEST(RealRelationsTest, AgreesOnKillian) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::relations_test

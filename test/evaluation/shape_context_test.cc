@@ -14,7 +14,7 @@
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::shape_context_test {
 namespace {
 
 using ::cartographer_sdf::testing::IsPoseNear;
@@ -109,9 +109,9 @@ TEST(ShapeContextTest, MatchingFindsThePoseOfAnotherView) {
   query.features = DescribeByShapeContexts({}, RoomCloud(T_world_query));
   const auto match = MatchPlaces(PaperMatchOptions(), reference, query);
   ASSERT_TRUE(match.has_value());
-  EXPECT_GT(match->closure.score, 10.);
+  EXPECT_GT(match->pair.score, 10.);
   EXPECT_THAT(
-      match->closure.T_reference_query,
+      match->pair.T_reference_query,
       IsPoseNear(T_world_reference.Inverse() * T_world_query, 0.1, 0.02));
 }
 
@@ -157,10 +157,10 @@ TEST(SubmapCloudTest, WallsOfTheCloudAreThoseOfTheGrid) {
   const std::string path = SharedDataPath("willow_1.pbstream");
   std::map<SubmapId, OccupancyGrid> grids;
   const auto state =
-      ReadMap(path, [&grids](const SubmapId& id, const SubmapSummary&,
-                             const OccupancyGrid& grid) {
-        if (id.index == 5) grids.emplace(id, grid);
-      });
+      ReadMap(path, {[&grids](const SubmapId& id, const SubmapSummary&,
+                              const OccupancyGrid& grid) {
+                if (id.index == 5) grids.emplace(id, grid);
+              }});
   ASSERT_TRUE(state.ok()) << state.status();
   const auto clouds = ReadSubmapClouds({}, path, state->pose_graph);
   ASSERT_TRUE(clouds.ok()) << clouds.status();
@@ -199,4 +199,4 @@ TEST(SubmapCloudTest, ReadsASmallMap) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::shape_context_test

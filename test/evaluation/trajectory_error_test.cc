@@ -7,7 +7,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::trajectory_error_test {
 namespace {
 
 // A square of 4 m.
@@ -96,4 +96,4 @@ TEST(EvaluateTrajectoryTest, NoneWhereTheMotionIsUndetermined) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::trajectory_error_test

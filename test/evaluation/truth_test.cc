@@ -3,14 +3,14 @@
 
 #include "cartographer_sdf/evaluation/truth.h"
 
-#include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/shared_data.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::truth_test {
 namespace {
 
 using ::cartographer_sdf::testing::TemporaryDirectory;
@@ -70,4 +70,4 @@ TEST(TruthTest, ReadsTheTruthOfARealMap) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::truth_test

@@ -12,7 +12,7 @@
 #include "test/testing/rotation_repeatability.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::descriptor_test {
 namespace {
 
 using testing::CentredGeometry;
@@ -274,4 +274,4 @@ TEST(DescriptorOptionsTest, ValidateNamesTheOption) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::descriptor_test

@@ -17,7 +17,7 @@
 #include "test/testing/random_number.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::keypoint_test {
 namespace {
 
 using testing::CentredGeometry;
@@ -520,4 +520,4 @@ TEST(KeypointOptionsTest, ValidateNamesTheOption) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::keypoint_test

@@ -11,7 +11,7 @@
 #include "test/testing/rotation_repeatability.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::rotation_invariance_test {
 namespace {
 
 using testing::AddRepeatability;
@@ -100,4 +100,4 @@ TEST(RotationInvarianceTest, RightAnglesLoseNothing) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::rotation_invariance_test

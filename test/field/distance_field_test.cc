@@ -13,7 +13,7 @@
 #include "test/testing/random_number.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::distance_field_test {
 namespace {
 
 using testing::AsciiGrid;
@@ -293,4 +293,4 @@ TEST(SampleFieldTest, NoneOutsideTheCentresOfTheOutermostCells) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::distance_field_test

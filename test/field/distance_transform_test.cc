@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/random_number.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::distance_transform_test {
 namespace {
 
 using testing::Uniform;
@@ -108,4 +108,4 @@ TEST(SquaredDistanceTransformDeathTest, NeedsASite) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::distance_transform_test

@@ -11,7 +11,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::whole_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -45,4 +45,4 @@ TEST_F(WholeFileTest, AFailingWriteLeavesTheOldFileAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::whole_file_test

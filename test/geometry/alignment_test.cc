@@ -10,7 +10,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::alignment_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
@@ -167,4 +167,4 @@ TEST(AlignPointPairsTest, WorksFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::alignment_test

@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/random_number.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::rigid2_test {
 namespace {
 
 using testing::Uniform;
@@ -93,4 +93,4 @@ TEST(Rigid2Test, PrintsItsUnits) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::rigid2_test

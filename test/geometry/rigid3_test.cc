@@ -9,7 +9,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/random_number.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::rigid3_test {
 namespace {
 
 using testing::Uniform;
@@ -100,4 +100,4 @@ TEST(Project2DTest, GravityAlignmentKeepsTheYaw) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::rigid3_test

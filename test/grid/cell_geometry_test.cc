@@ -11,7 +11,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/random_number.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::cell_geometry_test {
 namespace {
 
 using testing::Uniform;
@@ -100,4 +100,4 @@ TEST(SubmapIdTest, OrdersByTrajectoryThenIndex) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::cell_geometry_test

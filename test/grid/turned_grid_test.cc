@@ -8,7 +8,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/world.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::turned_grid_test {
 namespace {
 
 // A disc off the origin, in a grid that lies askew in its submap.
@@ -70,4 +70,4 @@ TEST(TurnedGridTest, AnEmptyGridStaysEmpty) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::turned_grid_test

@@ -90,9 +90,9 @@ inline void FeedScan(
   }
   // Beyond the host's largest range: no echo.
   constexpr float kNoEcho = 1000.f;
-  for (const Eigen::Vector2f& direction : scan.empty_beams) {
-    data.ranges.push_back(
-        {{kNoEcho * direction.x(), kNoEcho * direction.y(), 0.f}, 0.f});
+  for (const Eigen::Vector2f& miss : scan.misses) {
+    const Eigen::Vector2f end = kNoEcho * miss.normalized();
+    data.ranges.push_back({{end.x(), end.y(), 0.f}, 0.f});
   }
   map_builder->GetTrajectoryBuilder(trajectory_id)->AddSensorData(kRange, data);
 }

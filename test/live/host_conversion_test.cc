@@ -10,11 +10,11 @@
 #include "cartographer/mapping/2d/probability_grid_range_data_inserter_2d.h"
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/transform/transform.h"
-#include "cartographer_sdf/live/growing_grid.h"
+#include "cartographer_sdf/grid/scan_grid.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::host_conversion_test {
 namespace {
 
 namespace mapping = cartographer::mapping;
@@ -101,50 +101,37 @@ TEST(HostConversionTest, SubmapsAreCopiedCellByCell) {
   }
 }
 
-TEST(HostConversionTest, GrowingGridsAreWhatTheHostWouldDraw) {
-  const auto node = std::make_shared<mapping::TrajectoryNode::Data>();
+// Our grids of the host's scans, against the host's own.
+TEST(HostConversionTest, ScansAreDrawnAsTheHostWouldDrawThem) {
+  mapping::TrajectoryNode::Data node;
   // As with odometry: the gravity alignment holds the yaw, too.
-  node->gravity_alignment = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
-                            Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitX());
-  node->local_pose =
+  node.gravity_alignment = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) *
+                           Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitX());
+  node.local_pose =
       transform::Rigid3d({4., -7., 0.}, Eigen::Quaterniond::Identity()) *
-      transform::Rigid3d::Rotation(node->gravity_alignment);
-  GrowingGrid growing(kResolution, 10.);
-  growing.Insert({{0, 0}, node, ScanOfAnL({4.f, -7.f, 0.f}), 0.});
-  growing.Insert({{0, 1}, node, ScanOfAnL({4.5f, -7.2f, 0.f}), 0.5});
-  EXPECT_NEAR(growing.T_local_grid().translation().x(), 4., 1e-9);
-  EXPECT_NEAR(growing.T_local_grid().rotation(), 0., 1e-9);
-  const std::optional<OccupancyGrid> grid = growing.Copy();
-  ASSERT_TRUE(grid);
-
+      transform::Rigid3d::Rotation(node.gravity_alignment);
+  ScanGridOptions options;
+  options.resolution = kResolution;
+  ScanGrid grid(options);
   mapping::ValueConversionTables tables;
   mapping::ProbabilityGrid host(
       mapping::MapLimits(kResolution, Eigen::Vector2d(6.5, -4.5),
                          mapping::CellLimits(100, 100)),
       &tables);
   const auto inserter = Inserter();
-  inserter.Insert(ScanOfAnL({4.f, -7.f, 0.f}), &host);
-  inserter.Insert(ScanOfAnL({4.5f, -7.2f, 0.f}), &host);
-  ExpectSame(host, growing.T_local_grid(), *grid);
-}
-
-TEST(HostConversionTest, GrowingGridsLetTheOldGo) {
-  const auto node = std::make_shared<mapping::TrajectoryNode::Data>();
-  node->gravity_alignment = Eigen::Quaterniond::Identity();
-  GrowingGrid growing(kResolution, 4.);
-  for (int k = 0; k <= 10; ++k) {
-    growing.Insert({{0, k},
-                    node,
-                    ScanOfAnL({static_cast<float>(k), 0.f, 0.f}),
-                    static_cast<double>(k)});
+  // Neither points nor sensors on the border of a cell.
+  for (const Eigen::Vector3f& origin : {Eigen::Vector3f(4.02f, -7.03f, 0.3f),
+                                        Eigen::Vector3f(4.53f, -7.22f, 0.3f)}) {
+    const DrivenScan scan =
+        MakeDrivenScan({2, 3}, node, ScanOfAnL(origin), 1.5);
+    EXPECT_EQ(scan.node, (NodeId{2, 3}));
+    EXPECT_NEAR(scan.T_local_node.translation().x(), 4., 1e-9);
+    EXPECT_NEAR(scan.T_local_node.rotation(), 0., 1e-9);
+    EXPECT_EQ(scan.distance_driven, 1.5);
+    EXPECT_TRUE(grid.Insert(scan.T_local_sensor, scan.scan));
+    inserter.Insert(ScanOfAnL(origin), &host);
   }
-  // 0 to 4, then 3 to 7, then 6 to 10.
-  ASSERT_EQ(growing.scans().size(), 5u);
-  EXPECT_EQ(growing.scans().front().node.node_index, 6);
-  const std::optional<OccupancyGrid> grid = growing.Copy();
-  ASSERT_TRUE(grid);
-  // From the miss 3 m behind the oldest scan to the wall 2 m before the newest.
-  EXPECT_NEAR(kResolution * grid->geometry.size.x(), 9., 0.2);
+  ExpectSame(host, Rigid2(), grid.Crop());
 }
 
 // What the host makes of a constraint in AddSerializedConstraints must be the
@@ -178,4 +165,4 @@ TEST(HostConversionTest, ConstraintsHoldTheGravityAlignment) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::host_conversion_test

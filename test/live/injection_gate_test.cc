@@ -12,7 +12,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/random_number.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::injection_gate_test {
 namespace {
 
 // The host's queue of work and its trimmers, as far as they matter: who starts
@@ -208,4 +208,4 @@ TEST(InjectionGateTest, NeverLetsThroughWhatCouldBeTrimmed) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::injection_gate_test

@@ -8,7 +8,7 @@
 #include "test/testing/paths.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::live_options_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -22,14 +22,15 @@ TEST(LiveOptionsTest, ShippedFileEqualsTheDefaults) {
 
 TEST(LiveOptionsTest, UsersOverrideTheShippedFile) {
   testing::TemporaryDirectory directory;
-  directory.Write("mine.lua",
-                  "include \"sdf_live.lua\"\nSDF_LIVE.enabled = false\n"
-                  "SDF_LIVE.localization.min_score = 9.\nreturn SDF_LIVE\n");
+  directory.Write(
+      "mine.lua",
+      "include \"sdf_live.lua\"\nSDF_LIVE.enabled = false\n"
+      "SDF_LIVE.localization.query_interval_meters = 9.\nreturn SDF_LIVE\n");
   const auto options = LoadLiveOptions(
       {directory.path(), kTestConfigurationDirectory}, "mine.lua");
   ASSERT_TRUE(options.ok()) << options.status();
   EXPECT_FALSE(options->enabled);
-  EXPECT_EQ(options->localization.min_score, 9.);
+  EXPECT_EQ(options->localization.query_interval_meters, 9.);
 }
 
 TEST(LiveOptionsTest, SaysWhatIsWrong) {
@@ -42,8 +43,9 @@ TEST(LiveOptionsTest, SaysWhatIsWrong) {
     return std::string(options.status().message());
   };
   EXPECT_THAT(error_of("SDF_LIVE.enbled = true"), HasSubstr("enbled"));
-  EXPECT_THAT(error_of("SDF_LIVE.localization.min_lead = -1."),
-              HasSubstr("SDF_LIVE.localization.min_lead must not be negative"));
+  EXPECT_THAT(
+      error_of("SDF_LIVE.localization.localizer.placement.min_lead = -1."),
+      HasSubstr("min_lead must not be negative"));
   EXPECT_THAT(error_of("SDF_LIVE.match.method = \"paper\""),
               HasSubstr("match.method"));
   EXPECT_THAT(error_of("SDF_LIVE.min_index_gap = 0"),
@@ -51,4 +53,4 @@ TEST(LiveOptionsTest, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::live_options_test

@@ -22,7 +22,7 @@
 #include "test/live/host.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::map_builder_test {
 namespace {
 
 namespace mapping = cartographer::mapping;
@@ -297,15 +297,15 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
       live->WaitUntilIdle();
       Robot robot(map_builder.get(), trajectory_id, 7);
       size_t num_driven = 0;
-      std::optional<size_t> num_until_located;
+      std::optional<size_t> num_until_localized;
       robot.Drive(poses, [&] {
         ++num_driven;
         live->WaitUntilIdle();
-        if (!num_until_located &&
-            live->GetLocalization(trajectory_id)->located) {
-          num_until_located = num_driven;
+        if (!num_until_localized &&
+            live->GetLocalization(trajectory_id)->localized) {
+          num_until_localized = num_driven;
         }
-        if (!num_until_located) return false;
+        if (!num_until_localized) return false;
         // Until the constraints are there, and used. A robot would take longer.
         absl::SleepFor(absl::Milliseconds(50));
         return IsNear(
@@ -313,17 +313,17 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
                 trajectory_id)),
             TrueMapPose(poses.front()), 0.3, 0.05);
       });
-      ASSERT_TRUE(num_until_located) << LocalizationReasonName(
-          live->GetLocalization(trajectory_id)->reason);
+      ASSERT_TRUE(num_until_localized) << LocalizationVerdictName(
+          live->GetLocalization(trajectory_id)->verdict);
       const LocalizationResult result = *live->GetLocalization(trajectory_id);
-      EXPECT_EQ(result.reason, LocalizationReason::kLocated);
+      EXPECT_EQ(result.verdict, LocalizationVerdict::kLocalized);
       EXPECT_GE(result.num_queries, 2);
       EXPECT_LT(result.distance_driven, 10.);
       ExpectNear(*result.T_map_local, TrueMapPose(poses.front()), 0.3, 0.05);
       {
         const absl::MutexLock lock(&mutex);
         ASSERT_THAT(results, SizeIs(1));
-        EXPECT_TRUE(results.front().located);
+        EXPECT_TRUE(results.front().localized);
       }
       // The pose graph has been told, and agrees.
       EXPECT_GE(live->GetSummary().num_injected, 1);
@@ -332,7 +332,7 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
                  TrueMapPose(poses.front()), 0.3, 0.05);
       // Kidnapped, as it may think.
       live->Localize(trajectory_id);
-      EXPECT_FALSE(live->GetLocalization(trajectory_id)->located);
+      EXPECT_FALSE(live->GetLocalization(trajectory_id)->localized);
       map_builder->FinishTrajectory(trajectory_id);
       // While the loaded map's places are read from the file that was left.
       EXPECT_TRUE(std::ifstream(MapPath() + ".places").good());
@@ -347,13 +347,13 @@ TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
   LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder, nullptr);
-  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
-            LocalizationReason::kNoMap);
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->verdict,
+            LocalizationVerdict::kNoMap);
   EXPECT_FALSE(live->GetLocalization(17));
   map_builder->LoadStateFromFile(MapPath(), true);
   live->WaitUntilIdle();
-  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
-            LocalizationReason::kNotEnoughSeen);
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->verdict,
+            LocalizationVerdict::kTooLittleSeen);
   // A corridor without ends is everywhere and nowhere.
   Scan corridor;
   for (int k = -40; k <= 40; ++k) {
@@ -368,13 +368,13 @@ TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
     live->WaitUntilIdle();
   }
   const LocalizationResult result = *live->GetLocalization(trajectory_id);
-  EXPECT_FALSE(result.located);
+  EXPECT_FALSE(result.localized);
   EXPECT_GE(result.num_queries, 3);
-  EXPECT_NE(result.reason, LocalizationReason::kNotEnoughSeen);
+  EXPECT_NE(result.verdict, LocalizationVerdict::kTooLittleSeen);
   map_builder->FinishTrajectory(trajectory_id);
-  EXPECT_EQ(live->GetLocalization(trajectory_id)->reason,
-            LocalizationReason::kFinished);
+  EXPECT_EQ(live->GetLocalization(trajectory_id)->verdict,
+            LocalizationVerdict::kFinished);
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::map_builder_test

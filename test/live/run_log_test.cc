@@ -19,7 +19,7 @@
 #include "test/testing/shared_data.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::run_log_test {
 namespace {
 
 using ::cartographer_sdf::testing::TemporaryDirectory;
@@ -131,7 +131,7 @@ TEST_F(RunLogTest, DrivesAPieceInAFrozenMap) {
   EXPECT_THAT(result.output, HasSubstr("41 scans, 8 s"));
   const absl::StatusOr<MapState> state = ReadMap(output);
   ASSERT_TRUE(state.ok()) << state.status();
-  EXPECT_EQ(state->num_trajectories, 2);
+  EXPECT_EQ(state->trajectories.size(), 2u);
 }
 
 // The maps that results are measured on were made of these logs with these
@@ -235,4 +235,4 @@ TEST_F(RunLogTest, WrongUsageIsTold) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::run_log_test

@@ -23,7 +23,7 @@
 #include "test/testing/random_number.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::stress_test {
 namespace {
 
 namespace mapping = cartographer::mapping;
@@ -67,16 +67,20 @@ LiveOptions EagerOptions() {
   options.min_index_gap = 1;
   options.retrieval.min_num_candidates = 3;
   options.retrieval.max_num_candidates = 3;
-  VerificationOptions& verification = options.match.verification;
-  verification.min_overlap_area = 0.5;
-  verification.min_score = -1000.;
-  verification.min_margin = 0.;
-  verification.min_scatter_eigenvalue = 0.;
+  JudgementOptions& judgement = options.match.verification.judgement;
+  judgement.min_overlap_area = 0.5;
+  judgement.min_score = -1000.;
+  judgement.min_margin = 0.;
+  judgement.min_scatter_eigenvalue = 0.;
   options.consistency.min_unsupported_score = -1000.;
-  options.lifting.min_hit_ratio = 0.1;
+  options.constraints.min_num_constraints = 1;
+  options.constraints.min_hit_ratio = 0.1;
   options.localization.max_num_candidates = 3;
-  options.localization.min_score = -1000.;
-  options.localization.min_lead = 0.;
+  PlacementOptions& placement = options.localization.localizer.placement;
+  placement.min_score = 1e-3;
+  placement.min_lead = 0.;
+  placement.max_contradicting_fraction = 1.;
+  placement.min_observed_area = 0.5;
   options.localization.min_num_queries = 1;
   options.localization.query_interval_meters = 0.1;
   options.localization.window_meters = 1.;
@@ -219,11 +223,11 @@ TEST_F(StressTest, NeverAbortsTheHost) {
     stock_ = MakeStockOptions(StressLua(
         kEveryNNodes[static_cast<size_t>(num_runs) % kEveryNNodes.size()],
         num_runs % 2 == 1, matches_scans));
-    std::atomic<int> num_located{0};
+    std::atomic<int> num_localized{0};
     map_builder_ = CreateMapBuilder(
         mapping::CreateMapBuilder(stock_.map_builder), EagerOptions(),
-        [&num_located](const LocalizationResult& result) {
-          num_located += result.located ? 1 : 0;
+        [&num_localized](const LocalizationResult& result) {
+          num_localized += result.localized ? 1 : 0;
         });
     LiveMapBuilder* const live = AsLiveMapBuilder(map_builder_.get());
     auto* const pose_graph =
@@ -293,4 +297,4 @@ TEST_F(StressTest, NeverAbortsTheHost) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::stress_test

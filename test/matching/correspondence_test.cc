@@ -13,7 +13,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/feature_sets.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::correspondence_test {
 namespace {
 
 using testing::RandomFeatures;
@@ -228,4 +228,4 @@ TEST(CorrespondenceOptionsTest, ValidateNamesTheOption) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::correspondence_test

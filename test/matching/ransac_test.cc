@@ -14,7 +14,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/feature_sets.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::ransac_test {
 namespace {
 
 using testing::AddOutliers;
@@ -219,4 +219,4 @@ TEST(RansacOptionsTest, ValidateNamesTheOption) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::ransac_test

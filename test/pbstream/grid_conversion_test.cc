@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::grid_conversion_test {
 namespace {
 
 using ::testing::ElementsAreArray;
@@ -365,4 +365,4 @@ TEST(GridConversionTest, RefusesInvalidTsdfs) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::grid_conversion_test

@@ -17,7 +17,7 @@
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::hostile_map_test {
 namespace {
 
 using ::cartographer_sdf::testing::SmallMap;
@@ -56,8 +56,10 @@ class HostileMapTest : public ::testing::Test {
   std::string ErrorOf(const std::string& bytes) {
     WriteFile(path_, bytes);
     const absl::StatusOr<MapState> state = ReadMap(path_);
-    // The content of clouds is none of ReadMap()'s business.
+    // The content of clouds is none of ReadMap()'s business, unless somebody
+    // wants it.
     (void)ReadPointClouds(path_, AllNodes());
+    (void)ReadMap(path_, {{}, [](const NodeId&, const PointCloud2&) {}});
     if (state.ok()) return "";
     EXPECT_THAT(std::string(state.status().message()), HasSubstr(path_));
     EXPECT_FALSE(WriteMap(path_, path_ + ".out", PoseGraph{}).ok());
@@ -308,6 +310,13 @@ TEST_F(HostileMapTest, PointClouds) {
   EXPECT_THAT(
       std::string(ReadPointClouds(path_, AllNodes()).status().message()),
       HasSubstr(path_ + " is corrupted: record 7 has a point cloud"));
+  EXPECT_THAT(
+      std::string(ReadMap(path_, {{}, [](const NodeId&, const PointCloud2&) {}})
+                      .status()
+                      .message()),
+      HasSubstr(path_ +
+                " is corrupted: record 7 (node 5,1) has a point cloud"));
+  EXPECT_TRUE(ReadMap(path_).ok());
   map = SmallMap();
   map.nodes[1].mutable_node_id()->set_index(0);
   WriteFile(path_, Container(map.Records()));
@@ -399,4 +408,4 @@ TEST_F(HostileMapTest, MutatedRecords) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::hostile_map_test

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,10 +13,11 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
+#include "test/testing/open_counter.h"
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::joined_map_file_test {
 namespace {
 
 using ::cartographer_sdf::testing::Container;
@@ -230,14 +232,31 @@ TEST_F(JoinedMapFileTest, MovesTheOriginOfGps) {
   EXPECT_EQ(num_found, 1);
 }
 
-TEST_F(JoinedMapFileTest, ReadsPointCloudsOfAllParts) {
-  Join();
-  const auto clouds =
-      ReadJoinedPointClouds(parts_, {NodeId{0, 1}, NodeId{1, 2}, NodeId{7, 0}});
-  ASSERT_TRUE(clouds.ok());
-  ASSERT_EQ(clouds->size(), 2u);
-  EXPECT_NEAR(clouds->at({0, 1}).at(0).x(), 1., 1e-3);
-  EXPECT_NEAR(clouds->at({1, 2}).at(0).x(), 2., 1e-3);
+TEST_F(JoinedMapFileTest, ReadsEachPartOnce) {
+  MapState joined = Join();
+  for (auto& [id, node] : joined.pose_graph.nodes) {
+    if (id.trajectory == 1) node.T_map_node = Rigid2(1., 2., 3.);
+  }
+  testing::OpenCounter first(paths_[0]), second(paths_[1]);
+  std::vector<double> fractions;
+  ASSERT_TRUE(WriteJoinedMap(parts_, joined.pose_graph, output_,
+                             [&fractions](const double fraction) {
+                               fractions.push_back(fraction);
+                             })
+                  .ok());
+  EXPECT_EQ(first.Count(), 1);
+  EXPECT_EQ(second.Count(), 1);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.back(), 1.);
+  // But where nodes are not in the graph, what there is of them stays, for
+  // which their gravity alignments must be found out first.
+  const std::string expected = ReadFile(output_);
+  const NodeId unchanged{0, 1};
+  joined.pose_graph.nodes.erase(unchanged);
+  ASSERT_TRUE(WriteJoinedMap(parts_, joined.pose_graph, output_).ok());
+  EXPECT_EQ(first.Count(), 3);
+  EXPECT_EQ(second.Count(), 3);
+  EXPECT_TRUE(ReadFile(output_) == expected);
 }
 
 TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {
@@ -262,10 +281,20 @@ TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {
   WriteFile(paths_[1], Container(records));
   expect_error(joined.pose_graph, "is of trajectory 3, which is not in");
 
+  WriteFile(paths_[1], Container(RecordsOf(second_)));
   const std::string bytes = ReadFile(paths_[0]);
   WriteFile(paths_[0], bytes.substr(0, bytes.size() - 5));
   expect_error(joined.pose_graph, "truncated");
   WriteFile(paths_[0], bytes);
+
+  // What ReadMap() does not take: a node twice.
+  records = RecordsOf(second_);
+  const auto node = std::find_if(
+      records.begin(), records.end(),
+      [](const std::string& record) { return Parse(record).has_node(); });
+  records.push_back(*node);
+  WriteFile(paths_[1], Container(records));
+  expect_error(joined.pose_graph, "is the second of this node");
   EXPECT_THAT(
       std::string(
           WriteJoinedMap(parts_, joined.pose_graph, paths_[1]).message()),
@@ -273,4 +302,4 @@ TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::joined_map_file_test

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <vector>
@@ -12,13 +13,15 @@
 #include "cartographer_sdf/pbstream/pose_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/open_counter.h"
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::map_file_test {
 namespace {
 
 using ::cartographer_sdf::testing::Container;
+using ::cartographer_sdf::testing::OpenCounter;
 using ::cartographer_sdf::testing::ReadFile;
 using ::cartographer_sdf::testing::ReadRecords;
 using ::cartographer_sdf::testing::SmallMap;
@@ -89,7 +92,7 @@ class MapFileTest : public ::testing::Test {
 TEST_F(MapFileTest, CountsRecords) {
   const MapState state = Read(input_);
   EXPECT_EQ(state.format_version, 2);
-  EXPECT_EQ(state.num_trajectories, 1);
+  EXPECT_THAT(state.trajectories, ElementsAre(kTrajectory));
   EXPECT_THAT(
       state.num_records,
       UnorderedElementsAre(
@@ -163,9 +166,9 @@ TEST_F(MapFileTest, ReadsOdometryBetweenNodes) {
 
 TEST_F(MapFileTest, ReadsSubmaps) {
   std::vector<SubmapId> ids;
-  const absl::StatusOr<MapState> state =
-      ReadMap(input_, [&](const SubmapId& id, const SubmapSummary& summary,
-                          const OccupancyGrid& grid) {
+  const absl::StatusOr<MapState> state = ReadMap(
+      input_, {[&](const SubmapId& id, const SubmapSummary& summary,
+                   const OccupancyGrid& grid) {
         ids.push_back(id);
         EXPECT_EQ(summary.finished, id.index == 0);
         EXPECT_EQ(summary.num_range_data, 10 + id.index);
@@ -177,7 +180,7 @@ TEST_F(MapFileTest, ReadsSubmaps) {
             Eigen::Vector2d(1.75 - 1.5 * id.index, 0.75 - 0.25));
         EXPECT_TRUE(grid.known(cell.x(), cell.y()));
         EXPECT_NEAR(grid.probability(cell.x(), cell.y()), 0.9, 1e-6);
-      });
+      }});
   ASSERT_TRUE(state.ok()) << state.status();
   EXPECT_THAT(ids,
               ElementsAre(SubmapId{kTrajectory, 0}, SubmapId{kTrajectory, 1}));
@@ -190,8 +193,8 @@ TEST_F(MapFileTest, SubmapWithoutGridIsListed) {
   Write(map);
   int num_grids = 0;
   const absl::StatusOr<MapState> state =
-      ReadMap(input_, [&](const SubmapId&, const SubmapSummary&,
-                          const OccupancyGrid&) { ++num_grids; });
+      ReadMap(input_, {[&](const SubmapId&, const SubmapSummary&,
+                           const OccupancyGrid&) { ++num_grids; }});
   ASSERT_TRUE(state.ok()) << state.status();
   EXPECT_EQ(num_grids, 1);
   EXPECT_EQ(state->submaps.size(), 2u);
@@ -217,6 +220,25 @@ TEST_F(MapFileTest, ReadsPointClouds) {
             1e-6f);
 }
 
+TEST_F(MapFileTest, VisitsPointCloudsWhileItReads) {
+  OpenCounter counter(input_);
+  std::map<NodeId, PointCloud2> clouds;
+  int num_grids = 0;
+  const absl::StatusOr<MapState> state =
+      ReadMap(input_, {[&num_grids](const SubmapId&, const SubmapSummary&,
+                                    const OccupancyGrid&) { ++num_grids; },
+                       [&clouds](const NodeId& id, PointCloud2 cloud) {
+                         clouds.emplace(id, std::move(cloud));
+                       }});
+  ASSERT_TRUE(state.ok()) << state.status();
+  EXPECT_EQ(counter.Count(), 1);
+  EXPECT_EQ(num_grids, 2);
+  const NodeId first{kTrajectory, 0}, second{kTrajectory, 1},
+      third{kTrajectory, 2};
+  EXPECT_THAT(clouds, ElementsAre(Key(first), Key(second), Key(third)));
+  EXPECT_EQ(clouds, *ReadPointClouds(input_, {first, second, third}));
+}
+
 TEST_F(MapFileTest, ProgressGrowsToOne) {
   double last = 0.;
   int num_calls = 0;
@@ -237,6 +259,61 @@ TEST_F(MapFileTest, ProgressGrowsToOne) {
 TEST_F(MapFileTest, AnUnchangedMapIsCopied) {
   ASSERT_TRUE(WriteMap(input_, output_, Read(input_).pose_graph).ok());
   EXPECT_THAT(ReadRecords(output_), ElementsAreArray(ReadRecords(input_)));
+}
+
+TEST_F(MapFileTest, KeepsRecordsCompressedAsTheyAre) {
+  ASSERT_TRUE(WriteMap(input_, output_, Read(input_).pose_graph).ok());
+  EXPECT_TRUE(ReadFile(output_) == ReadFile(input_));
+}
+
+TEST_F(MapFileTest, ReadsOnceToWrite) {
+  PoseGraph graph = Read(input_).pose_graph;
+  graph.nodes.at(NodeId{kTrajectory, 1}).T_map_node = Rigid2(1., 2., 3.);
+  OpenCounter counter(input_);
+  int num_grids = 0;
+  const MapVisitor count_grids = {
+      [&num_grids](const SubmapId&, const SubmapSummary&,
+                   const OccupancyGrid&) { ++num_grids; },
+      {}};
+  ASSERT_TRUE(PrepareMap(input_, output_, graph, count_grids).ok());
+  EXPECT_EQ(counter.Count(), 1);
+  EXPECT_EQ(num_grids, 2);
+  // Their gravity alignments must be found out first.
+  graph.nodes.erase(NodeId{kTrajectory, 2});
+  num_grids = 0;
+  ASSERT_TRUE(PrepareMap(input_, output_, graph, count_grids).ok());
+  EXPECT_EQ(counter.Count(), 3);
+  EXPECT_EQ(num_grids, 2);
+}
+
+// Those of the file hold.
+TEST_F(MapFileTest, ChangedGravityAlignmentsAreNotWritten) {
+  PoseGraph graph = Read(input_).pose_graph;
+  for (auto& [id, node] : graph.nodes) {
+    node.T_map_node = Rigid2(1., 2., 3.) * node.T_map_node;
+  }
+  ASSERT_TRUE(WriteMap(input_, output_, graph).ok());
+  const std::string expected = ReadFile(output_);
+  for (auto& [id, node] : graph.nodes) {
+    node.gravity_alignment = SmallMap::Gravity(1);
+  }
+  ASSERT_TRUE(WriteMap(input_, output_, graph).ok());
+  EXPECT_TRUE(ReadFile(output_) == expected);
+}
+
+TEST_F(MapFileTest, APreparedMapAppearsWhenItIsCommitted) {
+  const PoseGraph graph = Read(input_).pose_graph;
+  for (const bool is_committed : {false, true}) {
+    {
+      absl::StatusOr<PreparedMap> map = PrepareMap(input_, output_, graph);
+      ASSERT_TRUE(map.ok()) << map.status();
+      EXPECT_FALSE(std::filesystem::exists(output_));
+      ASSERT_TRUE(!is_committed || map->Commit().ok());
+    }
+    const std::filesystem::directory_iterator files(directory_.path());
+    EXPECT_EQ(std::distance(begin(files), end(files)), is_committed ? 2 : 1);
+    EXPECT_EQ(std::filesystem::exists(output_), is_committed);
+  }
 }
 
 TEST_F(MapFileTest, WritesPosesAsTheHostDoes) {
@@ -426,4 +503,4 @@ TEST_F(MapFileTest, SaysWhyItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::map_file_test

@@ -14,7 +14,7 @@
 #include "test/testing/shared_data.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::real_map_test {
 namespace {
 
 using ::cartographer_sdf::testing::TemporaryDirectory;
@@ -86,16 +86,16 @@ TEST_P(RealMapTest, UnchangedMapIsCopied) {
   const std::string input = SharedDataPath(GetParam());
   const std::string output = directory.File("out.pbstream");
   int num_grids = 0;
-  const absl::StatusOr<MapState> state =
-      ReadMap(input, [&](const SubmapId&, const SubmapSummary& summary,
-                         const OccupancyGrid& grid) {
+  const absl::StatusOr<MapState> state = ReadMap(
+      input, {[&](const SubmapId&, const SubmapSummary& summary,
+                  const OccupancyGrid& grid) {
         ++num_grids;
         EXPECT_GT(summary.num_known_cells, 0);
         EXPECT_TRUE(
             grid.known
                 .select(grid.probability > 0.f && grid.probability < 1.f, true)
                 .all());
-      });
+      }});
   ASSERT_TRUE(state.ok()) << state.status();
   EXPECT_GT(num_grids, 0);
   EXPECT_FALSE(state->pose_graph.nodes.empty());
@@ -193,8 +193,8 @@ TEST_P(RealMapTest, PointCloudsHitTheWallsOfTheirSubmap) {
   int num_hits = 0;
   int num_hits_turned = 0;
   const absl::StatusOr<MapState> again = ReadMap(
-      input,
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
+      input, {[&](const SubmapId& id, const SubmapSummary&,
+                  const OccupancyGrid& grid) {
         const auto it = chosen.find(id);
         if (it == chosen.end()) return;
         for (const Eigen::Vector2f& point : clouds->at(it->second.node)) {
@@ -205,7 +205,7 @@ TEST_P(RealMapTest, PointCloudsHitTheWallsOfTheirSubmap) {
           num_hits_turned += IsNearWall(
               grid, T_submap_node * (Rigid2(0., 0., M_PI / 2.) * p_node));
         }
-      });
+      }});
   ASSERT_TRUE(again.ok());
   ASSERT_GT(num_points, 100);
   // The rest are people, glass and noise; measured: 0.81 to 1.
@@ -226,4 +226,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::real_map_test

@@ -16,7 +16,7 @@
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::record_stream_test {
 namespace {
 
 using ::cartographer_sdf::testing::Container;
@@ -299,4 +299,4 @@ TEST(RecordStreamTest, SaysWhyItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::record_stream_test

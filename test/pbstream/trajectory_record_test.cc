@@ -8,7 +8,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::trajectory_record_test {
 namespace {
 
 proto::SerializedData Parse(const std::string& record) {
@@ -68,4 +68,4 @@ TEST(TrajectoryOfRecordTest, NoneForWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::trajectory_record_test

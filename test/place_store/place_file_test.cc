@@ -17,7 +17,7 @@
 #include "test/testing/random_number.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::place_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -287,4 +287,4 @@ TEST(PlaceCodecTest, ImpossiblePlacesAreErrors) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::place_file_test

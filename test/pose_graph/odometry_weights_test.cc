@@ -8,7 +8,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/synthetic_pose_graph.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::odometry_weights_test {
 namespace {
 
 // Two rounds of 200 m with drift; none of it optimised yet.
@@ -153,4 +153,4 @@ TEST(InferOdometryWeightsTest, ReadsNothingAcrossGaps) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::odometry_weights_test

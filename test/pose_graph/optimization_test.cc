@@ -14,7 +14,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/synthetic_pose_graph.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::optimization_test {
 namespace {
 
 using ::cartographer_sdf::testing::InterSubmapConstraint;
@@ -505,4 +505,4 @@ TEST(OptimizationOptionsTest, ValidateNamesTheOffendingField) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::optimization_test

@@ -11,7 +11,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/synthetic_pose_graph.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::rotation_first_test {
 namespace {
 
 using ::cartographer_sdf::testing::MakeRoundTrip;
@@ -111,4 +111,4 @@ TEST(RotationFirstPosesTest, HandlesGraphsWithNothingToMove) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::rotation_first_test

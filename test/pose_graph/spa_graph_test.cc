@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/synthetic_pose_graph.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::spa_graph_test {
 namespace {
 
 using ::cartographer_sdf::testing::InterSubmapConstraint;
@@ -176,4 +176,4 @@ TEST(BuildSpaGraphDeathTest, ConstraintsMustNameElementsOfTheGraph) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::spa_graph_test

@@ -12,7 +12,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::match_test {
 namespace {
 
 using testing::IsPoseNear;
@@ -60,7 +60,7 @@ TEST_P(MatchPlacesTest, FindsTheOtherViewWhateverTheFrames) {
     EXPECT_STREQ(VerdictName(match->verdict), "accepted") << T_world_query;
     // At the room's middle.
     const Rigid2 T_world_room(3.5, 2.5, 0.);
-    EXPECT_THAT(T_world_reference * match->closure.T_reference_query *
+    EXPECT_THAT(T_world_reference * match->pair.T_reference_query *
                     T_world_query.Inverse() * T_world_room,
                 IsPoseNear(T_world_room, 0.1, kDegree))
         << T_world_query;
@@ -77,7 +77,7 @@ TEST_P(MatchPlacesTest, RoomsThatDifferDoNotMatch) {
     const std::optional<Match> match =
         MatchPlaces(Options(), *reference, *query);
     EXPECT_TRUE(!match || match->verdict != Verdict::kAccepted)
-        << match->closure.score;
+        << match->pair.score;
   }
 }
 
@@ -88,33 +88,34 @@ TEST_P(MatchPlacesTest, FillsInTheEvidence) {
   const Place query = See(T_world_query, OtherWestRoomViewpoints(), {3, 7});
   const std::optional<Match> match = MatchPlaces(Options(), reference, query);
   ASSERT_TRUE(match.has_value());
-  EXPECT_EQ(match->closure.reference, (SubmapId{0, 1}));
-  EXPECT_EQ(match->closure.query, (SubmapId{3, 7}));
-  const ClosureEvidence& evidence = match->closure.evidence;
-  EXPECT_EQ(evidence.inliers, static_cast<int>(match->inliers.size()));
-  EXPECT_GE(evidence.inliers, 12);
+  EXPECT_EQ(match->pair.reference, (SubmapId{0, 1}));
+  EXPECT_EQ(match->pair.query, (SubmapId{3, 7}));
+  const PairEvidence& evidence = match->evidence;
+  EXPECT_GE(match->inliers.size(), 12u);
   for (const auto& [p_reference, p_query] : match->inliers) {
     EXPECT_LT(
         (T_world_reference * p_reference - T_world_query * p_query).norm(),
         0.4);
   }
   if (GetParam() == Method::kPaper) {
-    EXPECT_EQ(match->closure.score, evidence.inliers);
-    EXPECT_FALSE(match->verification.has_value());
+    EXPECT_EQ(match->pair.score, match->inliers.size());
+    EXPECT_EQ(evidence.overlap_area, 0.);
     return;
   }
-  EXPECT_GT(match->closure.score, 3.);
+  EXPECT_GT(match->pair.score, 3.);
   EXPECT_NEAR(evidence.overlap_area, 36., 8.);
   EXPECT_GT(evidence.overlap, 0.9);
-  EXPECT_GT(evidence.hit_ratio, 0.9);
-  EXPECT_LE(evidence.hit_ratio, 1.);
-  EXPECT_LT(evidence.contradiction_ratio, 0.02);
-  EXPECT_GT(evidence.residual, 0.);
-  EXPECT_LT(evidence.residual, 0.05);
-  ASSERT_TRUE(match->verification.has_value());
-  EXPECT_EQ(match->closure.score, match->verification->score);
-  EXPECT_EQ(match->closure.information, match->verification->information);
-  EXPECT_EQ(match->verdict, match->verification->verdict);
+  EXPECT_GT(evidence.HitRatio(), 0.9);
+  EXPECT_LE(evidence.HitRatio(), 1.);
+  EXPECT_LT(evidence.ContradictionRatio(), 0.02);
+  EXPECT_GT(evidence.WallDistance(), 0.);
+  EXPECT_LT(evidence.WallDistance(), 0.05);
+  EXPECT_EQ(match->pair.score, match->pair_score);
+  EXPECT_EQ(match->pair.score,
+            Score(ScoreWeights(), match->evidence, match->margin));
+  EXPECT_EQ(match->verdict, Judge(JudgementOptions(), match->evidence,
+                                  match->pair.score, match->margin));
+  EXPECT_FALSE(match->neighbourhood.has_value());
 }
 
 TEST_P(MatchPlacesTest, IsDeterministic) {
@@ -125,11 +126,11 @@ TEST_P(MatchPlacesTest, IsDeterministic) {
   const std::optional<Match> one = MatchPlaces(Options(), reference, query);
   const std::optional<Match> other = MatchPlaces(Options(), reference, query);
   ASSERT_TRUE(one.has_value() && other.has_value());
-  EXPECT_EQ(one->closure.T_reference_query.translation(),
-            other->closure.T_reference_query.translation());
-  EXPECT_EQ(one->closure.T_reference_query.rotation(),
-            other->closure.T_reference_query.rotation());
-  EXPECT_EQ(one->closure.score, other->closure.score);
+  EXPECT_EQ(one->pair.T_reference_query.translation(),
+            other->pair.T_reference_query.translation());
+  EXPECT_EQ(one->pair.T_reference_query.rotation(),
+            other->pair.T_reference_query.rotation());
+  EXPECT_EQ(one->pair.score, other->pair.score);
   EXPECT_EQ(one->inliers, other->inliers);
 }
 
@@ -150,8 +151,8 @@ TEST_P(MatchPlacesTest, MovesWithTheSubmapFrame) {
   const std::optional<Match> here = MatchPlaces(Options(), reference, *moved);
   ASSERT_TRUE(there.has_value() && here.has_value());
   // Only rounding differs; the clusters of hypotheses may feel it.
-  EXPECT_THAT(here->closure.T_reference_query * T_moved_query,
-              IsPoseNear(there->closure.T_reference_query, 5e-3, 1e-3));
+  EXPECT_THAT(here->pair.T_reference_query * T_moved_query,
+              IsPoseNear(there->pair.T_reference_query, 5e-3, 1e-3));
 }
 
 TEST_P(MatchPlacesTest, NoneForPlacesWithoutFeatures) {
@@ -204,11 +205,12 @@ TEST(MatchOptionsTest, AreValidated) {
   };
   EXPECT_NE(error([](auto* o) { o->correspondence.num_neighbours = 0; }), "");
   EXPECT_NE(error([](auto* o) { o->hypotheses.max_num_hypotheses = 0; }), "");
-  EXPECT_NE(error([](auto* o) { o->verification.min_margin = -1.; }), "");
+  EXPECT_NE(error([](auto* o) { o->verification.judgement.min_margin = -1.; }),
+            "");
   EXPECT_NE(error([](auto* o) { o->ransac.max_num_iterations = 0; }), "");
   EXPECT_NE(error([](auto* o) { o->inlier_distance_meters = 0.; }), "");
   EXPECT_NE(error([](auto* o) { o->min_num_inliers = 1; }), "");
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::match_test

@@ -12,7 +12,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/two_visits.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::neighbourhood_test {
 namespace {
 
 using testing::IsPoseNear;
@@ -22,9 +22,9 @@ constexpr double kDegree = M_PI / 180.;
 
 Neighbourhood Ask(const TwoVisits& visits, const Rigid2& T_reference_query,
                   const NeighbourhoodOptions& options = {}) {
-  return AskNeighbours(options, VerificationOptions(), visits.Places(),
-                       visits.Places(), 3, TwoVisits::kWestFirst,
-                       TwoVisits::kWestAgain, T_reference_query);
+  return MeasureNeighbourhood(
+      options, VerificationOptions(), visits.Places(), visits.Places(), 3,
+      {TwoVisits::kWestFirst, TwoVisits::kWestAgain, T_reference_query});
 }
 
 TEST(NeighbourhoodTest, NeighboursOfTheRightPoseAgree) {
@@ -65,7 +65,7 @@ TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
       visits.T_world_submap(TwoVisits::kEastFirst).Inverse() *
       visits.T_world_submap(TwoVisits::kEastAgain);
   bool is_proposed = false;
-  for (const PoseProposal& proposal : neighbourhood.proposals) {
+  for (const PairPose& proposal : neighbourhood.proposals) {
     if (proposal.reference != TwoVisits::kEastFirst ||
         proposal.query != TwoVisits::kEastAgain) {
       continue;
@@ -81,10 +81,10 @@ TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
 TEST(NeighbourhoodTest, LeavesOutPairsThatShareScans) {
   const TwoVisits visits;
   const auto count = [&](const std::optional<int> min_index_gap) {
-    return AskNeighbours(NeighbourhoodOptions(), VerificationOptions(),
-                         visits.Places(), visits.Places(), min_index_gap,
-                         TwoVisits::kWestFirst, TwoVisits::kWestAgain,
-                         visits.T_west_first_west_again())
+    return MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
+                                visits.Places(), visits.Places(), min_index_gap,
+                                {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                                 visits.T_west_first_west_again()})
         .evidence.num_pairs;
   };
   EXPECT_GT(count(3), 0);
@@ -115,9 +115,9 @@ TEST(NeighbourhoodTest, IndicesMayBeAsLargeAsTheyLike) {
     places.emplace(id, place);
     odometry[id] = {};
   }
-  const PlacesAlongTrajectories map{&places, &odometry};
-  EXPECT_EQ(AskNeighbours(NeighbourhoodOptions(), VerificationOptions(), map,
-                          map, 3, {0, 0}, {0, kLast}, Rigid2())
+  const TrajectoryPlaces map{&places, &odometry};
+  EXPECT_EQ(MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
+                                 map, map, 3, {{0, 0}, {0, kLast}, Rigid2()})
                 .evidence.num_pairs,
             0);
 }
@@ -171,4 +171,4 @@ TEST(NeighbourhoodOptionsTest, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::neighbourhood_test

@@ -12,7 +12,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::place_recognizer_test {
 namespace {
 
 using testing::IsPoseNear;
@@ -45,7 +45,7 @@ std::vector<SubmapId> Accepted(const std::vector<Match>& matches) {
   std::vector<SubmapId> references;
   for (const Match& match : matches) {
     if (match.verdict == Verdict::kAccepted) {
-      references.push_back(match.closure.reference);
+      references.push_back(match.pair.reference);
     }
   }
   return references;
@@ -54,61 +54,58 @@ std::vector<SubmapId> Accepted(const std::vector<Match>& matches) {
 TEST(PlaceRecognizerTest, RecognisesWhatItRemembers) {
   PlaceRecognizer recognizer{RetrievalOptions(), MatchOptions()};
   const Place query = Query();
-  EXPECT_TRUE(recognizer.Recognize(query).empty());
+  EXPECT_TRUE(recognizer.Recognize(query).matches.empty());
   for (Place& room : Rooms()) recognizer.Remember(std::move(room));
   EXPECT_EQ(recognizer.places().size(), 3u);
 
-  const std::vector<Match> matches = recognizer.Recognize(query);
+  const std::vector<Match> matches = recognizer.Recognize(query).matches;
   EXPECT_THAT(Accepted(matches),
               ::testing::UnorderedElementsAre(SubmapId{0, 0}, SubmapId{1, 5}));
-  // Accepted ones first, the best of them at the front.
-  EXPECT_EQ(matches[0].verdict, Verdict::kAccepted);
-  EXPECT_EQ(matches[1].verdict, Verdict::kAccepted);
-  EXPECT_GE(matches[0].closure.score, matches[1].closure.score);
-  for (size_t k = 0; k < 2; ++k) {
-    EXPECT_EQ(matches[k].closure.query, query.id);
-    if (matches[k].closure.reference != (SubmapId{0, 0})) continue;
+  for (size_t k = 0; k < matches.size(); ++k) {
+    if (k > 0) {
+      EXPECT_LT(matches[k - 1].pair.reference, matches[k].pair.reference);
+    }
+    EXPECT_EQ(matches[k].pair.query, query.id);
+    if (matches[k].pair.reference != (SubmapId{0, 0})) continue;
     // At the room's middle.
     const Rigid2 T_world_room(3.5, 2.5, 0.);
-    EXPECT_THAT(kWorldWest * matches[k].closure.T_reference_query *
+    EXPECT_THAT(kWorldWest * matches[k].pair.T_reference_query *
                     kWorldQuery.Inverse() * T_world_room,
                 IsPoseNear(T_world_room, 0.1, kDegree));
   }
 }
 
-TEST(PlaceRecognizerTest, CandidatesComeWithAPose) {
+TEST(PlaceRecognizerTest, MatchesAsManyCandidatesAsAsked) {
   PlaceRecognizer recognizer{RetrievalOptions(), MatchOptions()};
   for (Place& room : Rooms()) recognizer.Remember(std::move(room));
-  const auto candidates = recognizer.Retrieve(Query());
-  ASSERT_GE(candidates.size(), 2u);
-  for (const RetrievalCandidate& candidate : candidates) {
-    if (candidate.id != (SubmapId{0, 0})) continue;
-    const Rigid2 T_world_room(3.5, 2.5, 0.);
-    // Half a bin.
-    EXPECT_THAT(kWorldWest * candidate.poses[0].T_reference_query *
-                    kWorldQuery.Inverse() * T_world_room,
-                IsPoseNear(T_world_room, 0.4, 0.1));
-  }
+  const auto one = recognizer.RecognizeAmongBest(Query(), 1);
+  EXPECT_EQ(one.num_candidates, 1u);
+  // The best candidate is one of the two views of the room.
+  EXPECT_THAT(Accepted(one.matches), ::testing::SizeIs(1));
+  EXPECT_EQ(recognizer.RecognizeAmongBest(Query(), 100).num_candidates, 3u);
 }
 
 TEST(PlaceRecognizerTest, ForgottenAndExcludedPlacesAreNotMatched) {
   PlaceRecognizer recognizer{RetrievalOptions(), MatchOptions()};
   for (Place& room : Rooms()) recognizer.Remember(std::move(room));
   const Place query = Query();
-  EXPECT_THAT(
-      Accepted(recognizer.Recognize(
-          query, [](const SubmapId& id) { return id.trajectory == 0; })),
-      ::testing::ElementsAre(SubmapId{1, 5}));
+  EXPECT_THAT(Accepted(recognizer
+                           .Recognize(query,
+                                      [](const SubmapId& id) {
+                                        return id.trajectory == 0;
+                                      })
+                           .matches),
+              ::testing::ElementsAre(SubmapId{1, 5}));
   EXPECT_TRUE(recognizer.Forget({1, 5}));
   EXPECT_FALSE(recognizer.Forget({1, 5}));
-  EXPECT_THAT(Accepted(recognizer.Recognize(query)),
+  EXPECT_THAT(Accepted(recognizer.Recognize(query).matches),
               ::testing::ElementsAre(SubmapId{0, 0}));
   EXPECT_TRUE(recognizer.Forget({0, 0}));
   EXPECT_TRUE(recognizer.Forget({0, 1}));
   EXPECT_TRUE(recognizer.places().empty());
-  EXPECT_TRUE(recognizer.Recognize(query).empty());
+  EXPECT_TRUE(recognizer.Recognize(query).matches.empty());
   recognizer.Remember(Rooms()[2]);
-  EXPECT_THAT(Accepted(recognizer.Recognize(query)),
+  EXPECT_THAT(Accepted(recognizer.Recognize(query).matches),
               ::testing::ElementsAre(SubmapId{1, 5}));
 }
 
@@ -120,13 +117,13 @@ TEST(PlaceRecognizerTest, OrderOfRememberingDoesNotMatter) {
     forward.Remember(rooms[k]);
     backward.Remember(rooms[rooms.size() - 1 - k]);
   }
-  const auto a = forward.Recognize(Query());
-  const auto b = backward.Recognize(Query());
+  const auto a = forward.Recognize(Query()).matches;
+  const auto b = backward.Recognize(Query()).matches;
   ASSERT_EQ(a.size(), b.size());
   ASSERT_FALSE(a.empty());
   for (size_t k = 0; k < a.size(); ++k) {
-    EXPECT_EQ(a[k].closure.reference, b[k].closure.reference);
-    EXPECT_EQ(a[k].closure.score, b[k].closure.score);
+    EXPECT_EQ(a[k].pair.reference, b[k].pair.reference);
+    EXPECT_EQ(a[k].pair.score, b[k].pair.score);
   }
 }
 
@@ -138,4 +135,4 @@ TEST(PlaceRecognizerDeathTest, KnowsEachIdOnce) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::place_recognizer_test

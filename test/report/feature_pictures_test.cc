@@ -15,7 +15,7 @@
 #include "test/testing/decoded_png.h"
 #include "test/testing/rectangular_room.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::feature_pictures_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -137,4 +137,4 @@ TEST(MatchMapTest, TintsBothSubmapsAndJoinsThem) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::feature_pictures_test

@@ -11,7 +11,7 @@
 #include "test/testing/markup_reader.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::html_report_test {
 namespace {
 
 using ::testing::AllOf;
@@ -31,11 +31,15 @@ int Count(const std::string& text, const std::string& part) {
 
 ReportedClosure TestClosure(const int index) {
   ReportedClosure reported;
-  reported.closure.reference = {0, index};
-  reported.closure.query = {1, index + 10};
-  reported.closure.T_reference_query = Rigid2(1.25, -2.5, M_PI / 2.);
-  reported.closure.score = 4.5;
-  reported.closure.evidence = {17, 321.5, 0.625, 0.875, 0.015625, 0.0625};
+  reported.match.pair = {
+      {0, index}, {1, index + 10}, Rigid2(1.25, -2.5, M_PI / 2.), 4.5};
+  reported.match.inliers.resize(17);
+  PairEvidence& evidence = reported.match.evidence;
+  evidence.overlap_area = 321.5;
+  evidence.overlap = 0.625;
+  // The worse direction is reported; root mean square distance of all hits.
+  evidence.query_in_reference = {64., 56., 1., 60. * 0.0625 * 0.0625};
+  evidence.reference_in_query = {64., 64., 0.5, 60. * 0.0625 * 0.0625};
   reported.accepted = index % 2 == 0;
   if (!reported.accepted) reported.reason = "contradicts <others>";
   reported.png = SmallPng();
@@ -80,7 +84,7 @@ TEST(HtmlReportTest, ShowsTheEvidence) {
             HasSubstr("<td>4.50</td><td>17</td><td>321.5</td><td>62 %</td>"
                       "<td>87.5 %</td><td>1.6 %</td><td>0.062</td>"
                       "<td>1.25</td><td>-2.50</td><td>90.0</td>")));
-  EXPECT_THAT(html, Not(HasSubstr(">withdrawn<")));
+  EXPECT_THAT(html, Not(HasSubstr(">refused<")));
 }
 
 TEST(HtmlReportTest, EmbedsPicturesThatDecode) {
@@ -152,4 +156,4 @@ TEST(HtmlReportTest, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::html_report_test

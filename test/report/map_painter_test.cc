@@ -10,7 +10,7 @@
 #include "test/testing/decoded_png.h"
 #include "test/testing/rectangular_room.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::map_painter_test {
 namespace {
 
 constexpr double kWall = 0.1;
@@ -141,4 +141,4 @@ TEST(MapPainterTest, OverlaysLieWhereTheirPointsAre) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::map_painter_test

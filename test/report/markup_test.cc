@@ -5,7 +5,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::markup_test {
 namespace {
 
 TEST(EscapeMarkupTest, EscapesWhatIsMarkup) {
@@ -31,4 +31,4 @@ TEST(EscapeMarkupTest, ReplacesWhatIsNoText) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::markup_test

@@ -8,7 +8,7 @@
 #include "test/testing/decoded_png.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::picture_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -97,4 +97,4 @@ TEST(ColorTest, CategoriesRepeatAndMixInterpolates) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::picture_test

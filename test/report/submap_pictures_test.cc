@@ -11,7 +11,7 @@
 #include "test/testing/decoded_png.h"
 #include "test/testing/rectangular_room.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::submap_pictures_test {
 namespace {
 
 constexpr Rgb kWhite{255, 255, 255};
@@ -161,4 +161,4 @@ TEST(DrawOccupancyGridTest, ShowsProbability) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::submap_pictures_test

@@ -10,7 +10,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/markup_reader.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::svg_plot_test {
 namespace {
 
 using ::testing::AllOf;
@@ -93,4 +93,4 @@ TEST(HistogramTest, SurvivesDegenerateData) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::svg_plot_test

@@ -189,6 +189,20 @@ class EvaluationReportTest(unittest.TestCase):
             values["loop_closing.match.ransac.inlier_distance_meters"], "0.3")
         self.assertEqual(values["report.map_picture_pixels"], "1600")
 
+    def test_the_page_shows_the_pictures_that_the_repository_keeps(self):
+        shown = evaluation_report.SHOWN
+        self.assertEqual(
+            evaluation_report.pictures(
+                pathlib.Path("results") / "evaluation",
+                [(shown[0], "one"), ("other.svg", "two"), (shown[1], "three")]),
+            [f"![one](evaluation/{shown[0]})", "",
+             f"![three](evaluation/{shown[1]})", ""])
+        ignored = (evaluation_report.SOURCE_DIR / ".gitignore").read_text(
+            encoding="utf-8").splitlines()
+        kept = [line.rpartition("/")[2] for line in ignored
+                if line.startswith("!/docs/results/evaluation/")]
+        self.assertEqual(sorted(kept), sorted(shown))
+
 
 if __name__ == "__main__":
     if len(sys.argv) < 2:

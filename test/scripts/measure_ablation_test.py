@@ -46,7 +46,7 @@ class MeasureAblationTest(unittest.TestCase):
         matches = self.directory / "matches.csv"
         matches.write_text(f"{IDS},verdict\n0,1,0,5,accepted\n"
                            "0,1,0,6,unsupported\n0,1,0,7,unlikely\n"
-                           "0,1,0,8,contradicted_by_others\n", encoding="utf-8")
+                           "0,1,0,8,inconsistent\n", encoding="utf-8")
         kept = self.directory / "kept.csv"
         measure_ablation.drop_refused(matches, kept)
         self.assertEqual(kept.read_text(encoding="utf-8").split(),

@@ -7,7 +7,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::drift_test {
 namespace {
 
 DriftOptions NoDrift() {
@@ -125,4 +125,4 @@ TEST(DriftTest, ValidatesOptions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::drift_test

@@ -10,7 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::drive_test {
 namespace {
 
 using Eigen::Array2i;
@@ -167,4 +167,4 @@ TEST(DriveTest, ValidatesOptions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::drive_test

@@ -12,7 +12,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/shared_data.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::floor_plan_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -143,4 +143,4 @@ TEST(FloorPlanTest, ReadsARealPlan) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::floor_plan_test

@@ -9,7 +9,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::lidar_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -100,7 +100,7 @@ TEST(LidarTest, ScanIsInTheRobotFrame) {
   RandomNumbers random(42);
   const Scan scan = TakeScan(room, {}, T_world_robot, Noiseless(), &random);
   ASSERT_EQ(scan.returns.size(), 360u);
-  EXPECT_TRUE(scan.empty_beams.empty());
+  EXPECT_TRUE(scan.misses.empty());
   double smallest = 10., largest = -10.;
   for (const Eigen::Vector2f& p_robot : scan.returns) {
     const Vector2d p_world = T_world_robot * p_robot.cast<double>();
@@ -117,21 +117,21 @@ TEST(LidarTest, ScanIsInTheRobotFrame) {
   EXPECT_NEAR(largest, 0.75 * M_PI - 0.5 * beam, 1e-6);
 }
 
-TEST(LidarTest, EmptyBeamsAreUnitDirections) {
+TEST(LidarTest, MissesEndAtTheLargestRange) {
   const FloorPlan room = RectangularRoom();
   LidarOptions options = Noiseless();
   options.max_range = 2.5;
   RandomNumbers random(42);
   const Scan scan = TakeScan(room, {}, Rigid2(4., 3., 0.), options, &random);
-  EXPECT_EQ(scan.returns.size() + scan.empty_beams.size(), 360u);
+  EXPECT_EQ(scan.returns.size() + scan.misses.size(), 360u);
   // Walls above and below are 2 m away: within reach up to acos(2 / 2.5) off.
   const double visible = 4. * std::acos(0.8);
   const double hidden_behind = 2. * M_PI - options.field_of_view;
   const double expected =
       360. * (2. * M_PI - hidden_behind - visible) / options.field_of_view;
-  EXPECT_NEAR(static_cast<double>(scan.empty_beams.size()), expected, 4.);
-  for (const Eigen::Vector2f& direction : scan.empty_beams) {
-    EXPECT_NEAR(direction.norm(), 1.f, 1e-6f);
+  EXPECT_NEAR(static_cast<double>(scan.misses.size()), expected, 4.);
+  for (const Eigen::Vector2f& miss : scan.misses) {
+    EXPECT_NEAR(miss.norm(), 2.5f, 1e-6f);
   }
 }
 
@@ -243,4 +243,4 @@ TEST(LidarTest, ValidatesOptions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::lidar_test

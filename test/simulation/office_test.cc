@@ -6,7 +6,7 @@
 #include "cartographer_sdf/simulation/path_planner.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::office_test {
 namespace {
 
 double ReachableArea(const FloorPlan& plan) {
@@ -114,4 +114,4 @@ TEST(OfficeTest, EachOptionIsReadAndValidated) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::office_test

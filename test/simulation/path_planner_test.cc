@@ -9,7 +9,7 @@
 #include "cartographer_sdf/simulation/random_numbers.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::path_planner_test {
 namespace {
 
 using Eigen::Array2i;
@@ -121,4 +121,4 @@ TEST(PathPlannerTest, NoRoomIsNoReachableCell) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::path_planner_test

@@ -7,7 +7,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::people_test {
 namespace {
 
 const Rigid2 kFarAway(1e3, 1e3, 0.);
@@ -113,4 +113,4 @@ TEST(PeopleTest, NeedRoomAndValidOptions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::people_test

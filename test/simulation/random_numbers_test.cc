@@ -8,7 +8,7 @@
 
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::random_numbers_test {
 namespace {
 
 constexpr int kNumSamples = 100000;
@@ -68,4 +68,4 @@ TEST(RandomNumbersTest, SeedsAndStreamsDiffer) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::random_numbers_test

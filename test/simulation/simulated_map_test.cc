@@ -13,7 +13,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::simulated_map_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -215,30 +215,30 @@ TEST(SimulatedMapTest, ReadsBackAsWritten) {
   ASSERT_TRUE(WriteSimulatedMap(map, path, truth_path).ok());
   int num_grids = 0;
   const absl::StatusOr<MapState> state =
-      ReadMap(path, [&](const SubmapId& id, const SubmapSummary& summary,
-                        const OccupancyGrid& grid) {
-        ++num_grids;
-        const SimulatedSubmap& submap = map.submaps[id.index];
-        EXPECT_TRUE(summary.finished);
-        EXPECT_EQ(summary.num_range_data, 120);
-        ASSERT_EQ(grid.known.rows(), submap.grid.known.rows());
-        ASSERT_EQ(grid.known.cols(), submap.grid.known.cols());
-        EXPECT_TRUE((grid.known == submap.grid.known).all());
-        // The file's step of probability.
-        EXPECT_LT((grid.known.cast<float>() *
-                   (grid.probability - submap.grid.probability))
-                      .abs()
-                      .maxCoeff(),
-                  0.8f / 32766.f);
-        EXPECT_NEAR((grid.geometry.CellCentre({0, 0}) -
-                     submap.grid.geometry.CellCentre({0, 0}))
-                        .norm(),
-                    0., 1e-6);
-      });
+      ReadMap(path, {[&](const SubmapId& id, const SubmapSummary& summary,
+                         const OccupancyGrid& grid) {
+                ++num_grids;
+                const SimulatedSubmap& submap = map.submaps[id.index];
+                EXPECT_TRUE(summary.finished);
+                EXPECT_EQ(summary.num_range_data, 120);
+                ASSERT_EQ(grid.known.rows(), submap.grid.known.rows());
+                ASSERT_EQ(grid.known.cols(), submap.grid.known.cols());
+                EXPECT_TRUE((grid.known == submap.grid.known).all());
+                // The file's step of probability.
+                EXPECT_LT((grid.known.cast<float>() *
+                           (grid.probability - submap.grid.probability))
+                              .abs()
+                              .maxCoeff(),
+                          0.8f / 32766.f);
+                EXPECT_NEAR((grid.geometry.CellCentre({0, 0}) -
+                             submap.grid.geometry.CellCentre({0, 0}))
+                                .norm(),
+                            0., 1e-6);
+              }});
   ASSERT_TRUE(state.ok()) << state.status();
   EXPECT_EQ(num_grids, static_cast<int>(map.submaps.size()));
   EXPECT_EQ(state->format_version, 2);
-  EXPECT_EQ(state->num_trajectories, 1);
+  EXPECT_EQ(state->trajectories.size(), 1u);
   EXPECT_EQ(state->num_records.at("odometry_data"),
             static_cast<int>(map.odometry.size()));
   EXPECT_EQ(state->pose_graph.submap_poses.size(), map.submaps.size());
@@ -373,4 +373,4 @@ TEST(SimulatedMapTest, RefusesWhatCannotBeSimulated) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::simulated_map_test

@@ -17,7 +17,7 @@
 
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
-#include "cartographer_sdf/verification/surface_model.h"
+#include "cartographer_sdf/place/surface_model.h"
 #include "glog/logging.h"
 #include "gmock/gmock.h"
 

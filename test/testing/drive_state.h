@@ -6,8 +6,8 @@
 #ifndef TEST_TESTING_DRIVE_STATE_H_
 #define TEST_TESTING_DRIVE_STATE_H_
 
-#include "cartographer_sdf/closure/loop_closure.h"
 #include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/pair_pose.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 
 namespace cartographer_sdf::testing {
@@ -37,21 +37,16 @@ inline void AddStraightDrive(const int trajectory, const Rigid2& T_map_way,
                    Constraint::Tag::kIntraSubmap});
   }
   state->trajectories.push_back(trajectory);
-  ++state->num_trajectories;
 }
 
 // Of submaps of two such drives along the same way; `offset` [m] from the
 // truth.
-inline LoopClosure ClosureOnWay(const SubmapId& reference,
-                                const SubmapId& query, const double spacing,
-                                const double offset, const double score) {
-  LoopClosure closure;
-  closure.reference = reference;
-  closure.query = query;
-  closure.T_reference_query =
-      Rigid2(spacing * (query.index - reference.index) + offset, 0., 0.);
-  closure.score = score;
-  return closure;
+inline PairPose PairOnWay(const SubmapId& reference, const SubmapId& query,
+                          const double spacing, const double offset,
+                          const double score) {
+  return {reference, query,
+          Rigid2(spacing * (query.index - reference.index) + offset, 0., 0.),
+          score};
 }
 
 }  // namespace cartographer_sdf::testing

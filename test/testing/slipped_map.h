@@ -18,6 +18,9 @@
 namespace cartographer_sdf::testing {
 
 enum class Slip { kNone, kInSubmaps8And9 };
+constexpr int kSlippedNode = 9 * 60 + 30;
+// (before <- after), as seen from the robot.
+inline Rigid2 SlipPose() { return Rigid2(0.4, 0.5, 0.05); }
 
 namespace internal {
 
@@ -29,14 +32,12 @@ inline void DrawGrids(SimulatedMap* const map) {
     const Rigid2 T_submap_local = submap.T_local_submap.Inverse();
     submap.T_world_submap =
         first.T_world_node * (T_submap_local * first.T_local_node).Inverse();
-    std::vector<Scan> scans(submap.end_node - submap.first_node);
-    std::vector<PosedScan> posed;
+    ScanGrid grid((ScanGridOptions()));
     for (int k = submap.first_node; k < submap.end_node; ++k) {
-      Scan& scan = scans[k - submap.first_node];
-      scan.returns = map->nodes[k].points;
-      posed.push_back({T_submap_local * map->nodes[k].T_local_node, &scan});
+      grid.Insert(T_submap_local * map->nodes[k].T_local_node,
+                  {map->nodes[k].points, {}});
     }
-    submap.grid = BuildSubmapGrid(posed, SubmapGridOptions());
+    submap.grid = grid.Crop();
   }
 }
 
@@ -46,7 +47,6 @@ inline void DrawGrids(SimulatedMap* const map) {
 // by 0.64 m and 0.05 rad as seen from the robot, in the middle of the 60 scans
 // that submaps 8 and 9 share.
 inline void WriteOffice(const Slip slip, const std::string& path) {
-  constexpr int kSlippedNode = 9 * 60 + 30;
   SimulationOptions options;
   options.drive.length = 240.;
   absl::StatusOr<SimulatedMap> map =
@@ -55,7 +55,7 @@ inline void WriteOffice(const Slip slip, const std::string& path) {
   if (slip == Slip::kInSubmaps8And9) {
     const Rigid2 T_local_node = map->nodes[kSlippedNode].T_local_node;
     const Rigid2 T_before_after =
-        T_local_node * Rigid2(0.4, 0.5, 0.05) * T_local_node.Inverse();
+        T_local_node * SlipPose() * T_local_node.Inverse();
     for (size_t k = kSlippedNode; k < map->nodes.size(); ++k) {
       map->nodes[k].T_local_node = T_before_after * map->nodes[k].T_local_node;
     }

@@ -11,22 +11,18 @@
 #include <string>
 
 #include "cartographer_sdf/evaluation/truth.h"
-#include "cartographer_sdf/loop_closing/described_map.h"
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/simulation/office.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
-#include "cartographer_sdf/tools/parallel_for.h"
 #include "glog/logging.h"
 #include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf::testing {
 
 inline Executor ThreadExecutor(const int num_threads) {
-  return
-      [num_threads](const size_t n, const std::function<void(size_t)>& task) {
-        ParallelFor(static_cast<int>(n), num_threads,
-                    [&task](const int i) { task(static_cast<size_t>(i)); });
-      };
+  return MakeExecutor(num_threads);
 }
 
 // As small as buildings and drives may be for places to be told apart, so that
@@ -42,8 +38,10 @@ inline FloorPlan MakeSmallOffice(const uint32_t seed) {
 // Without submaps only the nodes are kept, as where Cartographer trimmed all.
 inline void WriteShortDrive(const FloorPlan& plan, const uint32_t seed,
                             const std::string& path,
-                            const bool with_submaps = true) {
+                            const bool with_submaps = true,
+                            const DriftOptions& drift = DriftOptions()) {
   SimulationOptions options;
+  options.drift = drift;
   options.drive.length = 100.;
   options.drive.time_step = 0.1;
   options.lidar.num_beams = 240;
@@ -80,13 +78,13 @@ class TwoOffices {
     return *std::move(truth);
   }
   // How far a closure of two maps is from the truth.
-  [[nodiscard]] Rigid2 ErrorOf(const LoopClosure& closure,
+  [[nodiscard]] Rigid2 ErrorOf(const PairPose& pair,
                                const std::string& reference_map,
                                const std::string& query_map) const {
     const Rigid2 T_reference_query =
-        TruthOf(reference_map).T_world_submap.at(closure.reference).Inverse() *
-        TruthOf(query_map).T_world_submap.at(closure.query);
-    return T_reference_query.Inverse() * closure.T_reference_query;
+        TruthOf(reference_map).T_world_submap.at(pair.reference).Inverse() *
+        TruthOf(query_map).T_world_submap.at(pair.query);
+    return T_reference_query.Inverse() * pair.T_reference_query;
   }
 
  private:

@@ -10,8 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
-#include "cartographer_sdf/recognition/place.h"
 #include "test/testing/building.h"
 
 namespace cartographer_sdf::testing {
@@ -37,7 +37,7 @@ class TwoVisits {
     last.T_local_submap = last.T_local_submap * T_room_driftedroom;
   }
 
-  [[nodiscard]] PlacesAlongTrajectories Places() const {
+  [[nodiscard]] TrajectoryPlaces Places() const {
     return {&places_, &odometry_};
   }
   [[nodiscard]] const Rigid2& T_world_submap(const SubmapId& id) const {

@@ -12,7 +12,7 @@
 #include <malloc.h>
 #endif
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::allocator_test {
 namespace {
 
 // Arrays as of a submap with 1000 x 1000 cells.
@@ -36,4 +36,4 @@ TEST(KeepFreedMemoryTest, HasItForTheNextSubmap) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::allocator_test

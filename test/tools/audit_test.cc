@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/text_file.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/open_counter.h"
 #include "test/testing/program.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::audit_test {
 namespace {
 
 using ::testing::AllOf;
@@ -47,6 +48,7 @@ class AuditProgramTest : public ::testing::Test {
 testing::TemporaryDirectory* AuditProgramTest::directory_ = nullptr;
 
 TEST_F(AuditProgramTest, FindsWhatFalsifyAdded) {
+  testing::OpenCounter counter(File("bad.pbstream"));
   const ProgramResult result =
       RunTestProgram({"audit", "--input", File("bad.pbstream"), "--output",
                       File("mended.pbstream"), "--constraints",
@@ -54,6 +56,8 @@ TEST_F(AuditProgramTest, FindsWhatFalsifyAdded) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_EQ(result.error, "");
   EXPECT_THAT(result.output, HasSubstr("doubtful"));
+  // Once to read, and once to write and to draw.
+  EXPECT_EQ(counter.Count(), 2);
 
   const auto wrong =
       ReadCsv(File("wrong.csv"),
@@ -119,4 +123,4 @@ TEST_F(AuditProgramTest, RefusesWrongUsage) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::audit_test

@@ -8,18 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/trajectory_error.h"
 #include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/open_counter.h"
 #include "test/testing/program.h"
 #include "test/testing/shared_data.h"
 #include "test/testing/slipped_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::close_loops_test {
 namespace {
 
 using ::testing::AllOf;
@@ -122,6 +123,24 @@ TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
               AllOf(HasSubstr("torn inside"), HasSubstr("0,9: part")));
 }
 
+// What takes the time with large maps. Once to read, and once to write.
+TEST_F(CloseLoopsTest, DecompressesItsInputTwice) {
+  testing::OpenCounter counter(File("open.pbstream"));
+  const ProgramResult bare = CloseLoops("bare.pbstream", {});
+  ASSERT_EQ(bare.exit_code, 0) << bare.error;
+  EXPECT_EQ(counter.Count(), 2);
+  const ProgramResult reported =
+      CloseLoops("reported.pbstream", {"--report", File("another_report")});
+  ASSERT_EQ(reported.exit_code, 0) << reported.error;
+  EXPECT_EQ(counter.Count(), 4);
+  EXPECT_TRUE(directory_->Read("bare.pbstream") ==
+              directory_->Read("reported.pbstream"));
+  const ProgramResult info = RunTestProgram(
+      {"info", "--input", File("open.pbstream"), "--torn_submaps"});
+  ASSERT_EQ(info.exit_code, 0) << info.error;
+  EXPECT_EQ(counter.Count(), 5);
+}
+
 TEST_F(CloseLoopsTest, DoesNotDependOnThreads) {
   for (const std::string threads : {"1", "3"}) {
     const ProgramResult result = CloseLoops(
@@ -151,8 +170,8 @@ TEST_F(CloseLoopsTest, KeepsFrozenTrajectories) {
 TEST_F(CloseLoopsTest, LeavesAMapWithoutClosuresAsItIs) {
   directory_->Write("strict.lua",
                     "include \"sdf_global_constraints.lua\"\n"
-                    "SDF_GLOBAL_CONSTRAINTS.loop_closing.match.verification."
-                    "min_score = 1e6\n"
+                    "SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition."
+                    "match.verification.judgement.min_score = 1e6\n"
                     "return SDF_GLOBAL_CONSTRAINTS\n");
   const ProgramResult result = CloseLoops(
       "same.pbstream", {"--configuration_directory", directory_->path(),
@@ -175,6 +194,7 @@ TEST_F(CloseLoopsTest, RefusesInOneLineAndWritesNothing) {
       {{"--frozen_trajectories", "one"}, 2, "one"},
       {{"--threads", "-1"}, 2, "--threads"},
       {{"--closures", "/none/closures.csv"}, 1, "/none/closures.csv"},
+      {{"--report", "/dev/null/report"}, 1, "/dev/null/report"},
   };
   for (const auto& test : cases) {
     const ProgramResult result = CloseLoops("never.pbstream", test.arguments);
@@ -252,10 +272,10 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
     // apart.
     directory_->Write("lax.lua",
                       "include \"sdf_global_constraints.lua\"\n"
-                      "local v = SDF_GLOBAL_CONSTRAINTS.loop_closing.match."
-                      "verification\n"
-                      "v.min_score = -3.\n"
-                      "v.min_margin = 0.\n"
+                      "local judgement = SDF_GLOBAL_CONSTRAINTS.loop_closing."
+                      "recognition.match.verification.judgement\n"
+                      "judgement.min_score = -3.\n"
+                      "judgement.min_margin = 0.\n"
                       "return SDF_GLOBAL_CONSTRAINTS");
     const std::vector<std::string> lax = {
         "--configuration_directory", directory_->path(),
@@ -276,7 +296,7 @@ TEST_F(CloseLoopsTest, MatchesCanBeAskedToAgree) {
       }
       EXPECT_TRUE(alone[k].accepted);
       EXPECT_THAT(agreeing[k].verdict,
-                  ::testing::AnyOf("unsupported", "contradicted_by_others"));
+                  ::testing::AnyOf("unsupported", "inconsistent"));
       ++num_refused;
     }
     EXPECT_GT(num_refused, 0);
@@ -314,4 +334,4 @@ TEST_F(CloseLoopsTest, UserMapsRun) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::close_loops_test

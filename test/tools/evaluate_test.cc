@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/match_table.h"
 #include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/report/match_table.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/program.h"
@@ -13,7 +13,7 @@
 #include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::evaluate_test {
 namespace {
 
 using ::cartographer_sdf::testing::Container;
@@ -210,4 +210,4 @@ TEST(EvaluateRealMapTest, PrintsTheErrorsOfIntel) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::evaluate_test

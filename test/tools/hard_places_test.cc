@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "cartographer_sdf/evaluation/keypoint_repeatability.h"
+#include "cartographer_sdf/grid/scan_grid.h"
+#include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/recognition/place.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/lidar.h"
 #include "cartographer_sdf/simulation/people.h"
-#include "cartographer_sdf/simulation/submap_grid.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::hard_places_test {
 namespace {
 
 using Eigen::Vector2d;
@@ -68,21 +68,15 @@ Drive GoThrough(const FloorPlan& plan, const bool back, const uint32_t seed,
   }
   Drive drive;
   drive.T_world_submap = back ? poses.back() : poses.front();
-  std::vector<Scan> scans;
+  std::vector<PlacedScan> scans;
   for (size_t k = 0; k != poses.size(); ++k) {
-    scans.push_back(TakeScan(
-        plan,
-        people_at ? people_at(static_cast<int>(k)) : std::vector<Person>(),
-        poses[k], lidar, &random));
+    scans.push_back({drive.T_world_submap.Inverse() * poses[k],
+                     TakeScan(plan,
+                              people_at ? people_at(static_cast<int>(k))
+                                        : std::vector<Person>(),
+                              poses[k], lidar, &random)});
   }
-  std::vector<PosedScan> posed;
-  for (size_t k = 0; k != poses.size(); ++k) {
-    posed.push_back({drive.T_world_submap.Inverse() * poses[k], &scans[k]});
-  }
-  SubmapGridOptions options;
-  options.empty_beam_length =
-      std::min(options.empty_beam_length, lidar.max_range);
-  drive.grid = BuildSubmapGrid(posed, options);
+  drive.grid = DrawScans(ScanGridOptions(), scans);
   return drive;
 }
 
@@ -136,7 +130,7 @@ Recognition Recognise(const Drive& there, const Drive& back) {
   if (!match.has_value()) return result;
   result.accepted = match->verdict == Verdict::kAccepted;
   const Rigid2 error =
-      T_reference_query.Inverse() * match->verification->T_reference_query;
+      T_reference_query.Inverse() * match->pair.T_reference_query;
   result.translation_error = error.translation().norm();
   result.rotation_error = std::abs(error.rotation());
   return result;
@@ -255,4 +249,4 @@ TEST(HardPlacesTest, NoKeypointLiesInTheUnknown) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::hard_places_test

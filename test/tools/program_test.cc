@@ -17,7 +17,7 @@
 
 DEFINE_bool(test_bool, true, "A boolean for the test.");
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::program_test {
 namespace {
 
 using ::testing::AllOf;
@@ -186,4 +186,4 @@ TEST(FlagsTest, LoadsOptions) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::program_test

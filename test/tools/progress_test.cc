@@ -9,7 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::progress_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -77,7 +77,8 @@ TEST(ProgressTest, NeedsNoTerminal) {
   Progress progress("read", nullptr, 60, [&now] { return now; });
   now = 10.;
   progress.Update(0.5);
+  EXPECT_EQ(progress.ElapsedSeconds(), 10.);
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::progress_test

@@ -8,20 +8,27 @@
 #include <vector>
 
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/tools/session_json.h"
+#include "cartographer_sdf/report/json.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/program.h"
 #include "test/testing/shared_data.h"
 #include "test/testing/two_offices.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::sessions_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
+
+std::vector<std::string> NamesOf(const Json& object) {
+  std::vector<std::string> names;
+  for (const auto& member : object.items()) names.push_back(member.key());
+  return names;
+}
 
 class SessionsTest : public ::testing::Test {
  protected:
@@ -29,6 +36,9 @@ class SessionsTest : public ::testing::Test {
   static void TearDownTestSuite() { delete offices_; }
   static std::string File(const std::string& name) {
     return offices_->File(name);
+  }
+  static Json ParseFile(const std::string& name) {
+    return Json::parse(offices_->Read(name));
   }
   static testing::TwoOffices* offices_;
 };
@@ -42,12 +52,28 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_EQ(result.error, "");
   EXPECT_THAT(result.output, StartsWith("localized: x "));
-  const std::string json = offices_->Read("found.json");
-  EXPECT_THAT(json, AllOf(HasSubstr("\"localized\": true"),
-                          HasSubstr("\"T_map_query\": {\"x\": "),
-                          HasSubstr("\"runner_up_score\": "),
-                          HasSubstr("\"closures\": [\n"),
-                          HasSubstr("\"milliseconds\": {")));
+  const Json json = ParseFile("found.json");
+  EXPECT_THAT(
+      NamesOf(json),
+      ElementsAre("localized", "verdict", "reason", "T_map_query", "score",
+                  "runner_up_score", "agreeing", "contradicting", "closures",
+                  "placements", "milliseconds"));
+  EXPECT_EQ(json["localized"], true);
+  EXPECT_EQ(json["verdict"], "localized");
+  EXPECT_THAT(NamesOf(json["T_map_query"]), ElementsAre("x", "y", "yaw"));
+  EXPECT_GT(json["score"].get<double>(), 0.);
+  ASSERT_FALSE(json["closures"].empty());
+  EXPECT_EQ(json["closures"].size(), json["agreeing"].get<size_t>());
+  EXPECT_THAT(
+      NamesOf(json["closures"][0]),
+      ElementsAre("reference_trajectory", "reference_index", "query_trajectory",
+                  "query_index", "score", "x", "y", "yaw", "overlap",
+                  "hit_ratio", "contradiction_ratio"));
+  ASSERT_FALSE(json["placements"].empty());
+  EXPECT_THAT(NamesOf(json["placements"][0]),
+              ElementsAre("T_map_query", "score", "matches", "rival"));
+  ASSERT_FALSE(json["milliseconds"].empty());
+  EXPECT_TRUE(json["milliseconds"].front().is_number());
   EXPECT_THAT(offices_->Read("found/index.html"),
               AllOf(HasSubstr("evening.pbstream"), HasSubstr("Agreeing"),
                     Not(HasSubstr("http"))));
@@ -55,7 +81,7 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
   const auto map = ReadMap(offices_->Morning());
   const auto attached = ReadMap(File("attached.pbstream"));
   ASSERT_TRUE(map.ok() && attached.ok());
-  EXPECT_EQ(attached->num_trajectories, 2);
+  EXPECT_EQ(attached->trajectories.size(), 2u);
   for (const auto& [id, node] : map->pose_graph.nodes) {
     const Node& same = attached->pose_graph.nodes.at(id);
     EXPECT_EQ(same.T_map_node.translation(), node.T_map_node.translation());
@@ -77,9 +103,11 @@ TEST_F(SessionsTest, ARefusalIsAnAnswer) {
   ProgramResult result = RunTestProgram(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.output, StartsWith("not localized: "));
-  EXPECT_THAT(offices_->Read("refused.json"),
-              AllOf(HasSubstr("\"localized\": false"),
-                    HasSubstr("\"T_map_query\": null")));
+  const Json json = ParseFile("refused.json");
+  EXPECT_EQ(json["localized"], false);
+  EXPECT_NE(json["reason"], "");
+  EXPECT_EQ(json["T_map_query"], nullptr);
+  EXPECT_EQ(json["closures"], Json::array());
   // Unless a map was to be made of it.
   arguments.insert(arguments.end(), {"--output", File("refused.pbstream")});
   result = RunTestProgram(arguments);
@@ -96,8 +124,14 @@ TEST_F(SessionsTest, TriesManyStarts) {
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.output, HasSubstr(" of 3 windows were localized\n"));
   EXPECT_TRUE(std::filesystem::exists(File("places")));
-  EXPECT_THAT(offices_->Read("starts.json"),
-              StartsWith("[{\"start_seconds\": 0, \"result\": {\n"));
+  const Json json = ParseFile("starts.json");
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[0]["start_seconds"], 0.);
+  EXPECT_GT(json[1]["start_seconds"], 0.);
+  for (const Json& start : json) {
+    EXPECT_THAT(NamesOf(start), ElementsAre("start_seconds", "result"));
+    EXPECT_TRUE(start["result"]["localized"].is_boolean());
+  }
 }
 
 TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
@@ -111,14 +145,24 @@ TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
   const ProgramResult result = merge(File("merged.pbstream"), "1");
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.output, HasSubstr("elsewhere.pbstream: NOT CONNECTED"));
+  const Json json = ParseFile("merged.json");
   EXPECT_THAT(
-      offices_->Read("merged.json"),
-      AllOf(HasSubstr("\"merged\": true"), HasSubstr("\"connected\": false")));
+      NamesOf(json),
+      ElementsAre("merged", "reason", "sessions", "pairs", "closures",
+                  "overlapping_pairs", "contradicting_pairs", "milliseconds"));
+  EXPECT_EQ(json["merged"], true);
+  ASSERT_EQ(json["sessions"].size(), 3u);
+  EXPECT_EQ(json["sessions"][0]["path"], offices_->Elsewhere());
+  EXPECT_EQ(json["sessions"][0]["merged"], false);
+  EXPECT_EQ(json["sessions"][0]["T_merged_session"], nullptr);
+  EXPECT_EQ(json["sessions"][2]["merged"], true);
+  ASSERT_EQ(json["pairs"].size(), 3u);
+  EXPECT_EQ(json["pairs"][0]["connected"], false);
   EXPECT_THAT(offices_->Read("merged/index.html"),
               HasSubstr("is not connected with the others"));
   const auto merged = ReadMap(File("merged.pbstream"));
   ASSERT_TRUE(merged.ok()) << merged.status();
-  EXPECT_EQ(merged->num_trajectories, 2);
+  EXPECT_EQ(merged->trajectories.size(), 2u);
   // The same bytes, whatever the number of threads.
   ASSERT_EQ(merge(File("again.pbstream"), "3").exit_code, 0);
   EXPECT_EQ(offices_->Read("merged.pbstream"),
@@ -165,12 +209,5 @@ TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
   EXPECT_FALSE(std::filesystem::exists(File("x")));
 }
 
-TEST(QuoteJsonTest, AnyBytesAreAString) {
-  EXPECT_EQ(QuoteJson("plain"), "\"plain\"");
-  EXPECT_EQ(QuoteJson("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\u000a\\u0001\"");
-  EXPECT_EQ(QuoteJson("gr\xc3\xbc\xc3\x9f"), "\"gr\xc3\xbc\xc3\x9f\"");
-  EXPECT_EQ(QuoteJson("\xff\xc3"), "\"??\"");
-}
-
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::sessions_test

@@ -9,10 +9,9 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 
-namespace cartographer_sdf {
+namespace cartographer_sdf::agreement_test {
 namespace {
 
-constexpr size_t kAll = std::numeric_limits<size_t>::max();
 constexpr double kCell = 0.04;
 
 // A wall at cell 0 of a row; free cells at 1 to 29, of which those from 20 on
@@ -38,7 +37,7 @@ SurfacePoint PointInCell(const int i, const double weight = 1.) {
 
 DirectedAgreement Measure(const std::vector<SurfacePoint>& points) {
   return MeasureAgreement(AgreementOptions(), WallAtTheBeginningOfARow(),
-                          points, Rigid2(), kAll);
+                          points, Rigid2());
 }
 
 TEST(AgreementTest, PointsOnAWallAreHits) {
@@ -81,8 +80,7 @@ TEST(AgreementTest, CertaintyCanBeIgnored) {
   options.weigh_by_certainty = false;
   const DirectedAgreement agreement = MeasureAgreement(
       options, WallAtTheBeginningOfARow(),
-      {PointInCell(0, 0.5), PointInCell(25, 0.25), PointInCell(15)}, Rigid2(),
-      kAll);
+      {PointInCell(0, 0.5), PointInCell(25, 0.25), PointInCell(15)}, Rigid2());
   EXPECT_EQ(agreement.num_points, 3.);
   EXPECT_EQ(agreement.hits, 1.);
   EXPECT_EQ(agreement.contradictions, 2.);
@@ -99,25 +97,27 @@ TEST(TileAgreementTest, EachPlaceCountsOnce) {
   const SurfaceModel b =
       testing::SurfaceSeenFrom(with_box, Rigid2(), viewpoints);
   const TileAgreement same =
-      MeasureTileAgreement(AgreementOptions(), a, a, Rigid2(), kAll);
+      MeasureTileAgreement(AgreementOptions(), a, a, Rigid2());
   EXPECT_NEAR(same.mean_hit_ratio, 1., 1e-9);
   // 48 m of wall.
   EXPECT_NEAR(same.num_tiles, 24., 6.);
   const TileAgreement different =
-      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(), kAll);
+      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2());
   EXPECT_LT(different.mean_hit_ratio, 1. - 0.5 / different.num_tiles);
   // Either way round, but for where the squares begin.
   const TileAgreement swapped =
-      MeasureTileAgreement(AgreementOptions(), b, a, Rigid2(), kAll);
+      MeasureTileAgreement(AgreementOptions(), b, a, Rigid2());
   EXPECT_NEAR(swapped.mean_hit_ratio, different.mean_hit_ratio, 0.05);
   // A sample stands for all.
+  AgreementOptions few_points;
+  few_points.max_num_points = 400;
   const TileAgreement sampled =
-      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(), 400);
+      MeasureTileAgreement(few_points, a, b, Rigid2());
   EXPECT_NEAR(sampled.num_tiles, different.num_tiles, 2.);
   EXPECT_NEAR(sampled.mean_hit_ratio, different.mean_hit_ratio, 0.05);
   // Far away they share nothing.
-  const TileAgreement none = MeasureTileAgreement(AgreementOptions(), a, b,
-                                                  Rigid2(500., 0., 0.), kAll);
+  const TileAgreement none =
+      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(500., 0., 0.));
   EXPECT_EQ(none.num_tiles, 0.);
   EXPECT_EQ(none.mean_hit_ratio, 0.);
 }
@@ -140,18 +140,19 @@ TEST(AgreementTest, TakesPointsIntoTheModel) {
   // Points on a line away from the wall, turned by 90 degrees onto it.
   const std::vector<SurfacePoint> points = {{{0., 0.3}, 1.}, {{0., 0.8}, 1.}};
   const Rigid2 T_model_points(0.32, 0.02, M_PI_2);
-  const DirectedAgreement agreement =
-      MeasureAgreement(AgreementOptions(), WallAtTheBeginningOfARow(), points,
-                       T_model_points, kAll);
+  const DirectedAgreement agreement = MeasureAgreement(
+      AgreementOptions(), WallAtTheBeginningOfARow(), points, T_model_points);
   // (0.02, 0.02) is the wall's centre, (-0.48, 0.02) is unknown.
   EXPECT_NEAR(agreement.num_points, 1., 1e-6);
   EXPECT_NEAR(agreement.hits, 1., 1e-6);
 }
 
 TEST(AgreementTest, MeasuresTheFirstPointsAlone) {
+  AgreementOptions options;
+  options.max_num_points = 2;
   const DirectedAgreement agreement = MeasureAgreement(
-      AgreementOptions(), WallAtTheBeginningOfARow(),
-      {PointInCell(0), PointInCell(10), PointInCell(0)}, Rigid2(), 2);
+      options, WallAtTheBeginningOfARow(),
+      {PointInCell(0), PointInCell(10), PointInCell(0)}, Rigid2());
   EXPECT_NEAR(agreement.num_points, 2., 1e-6);
   EXPECT_NEAR(agreement.hits, 1., 1e-6);
 }
@@ -165,11 +166,11 @@ TEST(AgreementTest, TrueViewsOfOneBuildingAgree) {
       building, T_world_query, {{2.2, 2.4}, {4.4, 3.2}, {6.3, 4.2}});
   const Rigid2 truth = T_world_reference.Inverse() * T_world_query;
   const DirectedAgreement agreement =
-      MeasureAgreement(AgreementOptions(), reference, query, truth, kAll);
+      MeasureAgreement(AgreementOptions(), reference, query.walls, truth);
   EXPECT_GT(agreement.HitRatio(), 0.97);
   EXPECT_LT(agreement.ContradictionRatio(), 0.01);
   const DirectedAgreement shifted = MeasureAgreement(
-      AgreementOptions(), reference, query, Rigid2(1., 0.5, 0.) * truth, kAll);
+      AgreementOptions(), reference, query.walls, Rigid2(1., 0.5, 0.) * truth);
   EXPECT_LT(shifted.HitRatio(), 0.5);
   EXPECT_GT(shifted.ContradictionRatio(), 0.2);
 }
@@ -213,4 +214,4 @@ TEST(OverlapAreaTest, IsTheBruteForceOne) {
 }
 
 }  // namespace
-}  // namespace cartographer_sdf
+}  // namespace cartographer_sdf::agreement_test

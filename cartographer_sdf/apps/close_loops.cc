@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/apps/close_loops.h"
+
+#include "cartographer_sdf/place_store/described_map.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+
+std::string Validate(const LoopClosingOptions& options) {
+  for (const std::string& error :
+       {Validate(options.place), Validate(options.recognition),
+        Validate(options.closing)}) {
+    if (!error.empty()) return error;
+  }
+  return "";
+}
+
+absl::StatusOr<LoopClosingResult> CloseLoops(
+    const LoopClosingOptions& options, const std::string& path,
+    const std::set<int>& frozen_trajectories, const Executor& executor,
+    const StageCallback& on_stage) {
+  CHECK_EQ(Validate(options), "");
+  CHECK(options.recognition.match.method == Method::kSdf)
+      << "the paper's method verifies nothing";
+  LoopClosingResult result;
+  StageClock clock(on_stage, &result.stage_seconds);
+  absl::StatusOr<DescribedMap> map =
+      DescribeMap(options.place, options.recognition.match, path, executor,
+                  clock.Begin("read and describe"), PointClouds::kKeep);
+  if (!map.ok()) return map.status();
+  result.num_places = map->places.size();
+  std::vector<Match> matches = RecognizeWithin(
+      options.recognition, map->trajectory_places(), executor, &clock);
+  result.num_matches = matches.size();
+  ClosingOptions closing = options.closing;
+  closing.optimization = OptimizationInForce(closing, map->state.pose_graph);
+  result.optimization = closing.optimization;
+  result.closed =
+      CloseGraph(closing,
+                 {&map->state.pose_graph, &map->odometry, &map->places,
+                  &map->point_clouds},
+                 std::move(matches), frozen_trajectories, executor, &clock);
+  clock.End();
+  result.state = std::move(map->state);
+  return result;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The main job: finds the loop closures of a saved map by what its submaps look
+// like, and optimises the pose graph with a mutually consistent set of them.
+
+#ifndef CARTOGRAPHER_SDF_APPS_CLOSE_LOOPS_H_
+#define CARTOGRAPHER_SDF_APPS_CLOSE_LOOPS_H_
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/closing/pipeline.h"
+#include "cartographer_sdf/execution/executor.h"
+#include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place/place.h"
+#include "cartographer_sdf/recognition/recognize.h"
+
+namespace cartographer_sdf {
+
+struct LoopClosingOptions {
+  PlaceOptions place;
+  RecognitionOptions recognition;
+  ClosingOptions closing;
+};
+[[nodiscard]] std::string Validate(const LoopClosingOptions& options);
+
+struct LoopClosingResult {
+  MapState state;  // as read
+  size_t num_places = 0;
+  size_t num_matches = 0;  // poses that were verified, accepted or not
+  ClosedGraph closed;
+  // The options in force, odometry weights as inferred.
+  OptimizationOptions optimization;
+  std::vector<std::pair<std::string, double>> stage_seconds;
+};
+
+// Fails where the file can't be read. Frozen trajectories stay where they are.
+// The recognition's method is kSdf.
+[[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
+    const LoopClosingOptions& options, const std::string& path,
+    const std::set<int>& frozen_trajectories, const Executor& executor,
+    const StageCallback& on_stage = {});
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_APPS_CLOSE_LOOPS_H_

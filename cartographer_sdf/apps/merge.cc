@@ -1,0 +1,335 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/apps/merge.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_sdf/apps/joined_sessions.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Indices that are joined, each named by the lowest one it is joined with.
+class Groups {
+ public:
+  explicit Groups(const size_t size) : parents_(size) {
+    std::iota(parents_.begin(), parents_.end(), size_t{0});
+  }
+  [[nodiscard]] size_t Of(const size_t k) const {
+    return parents_[k] == k ? k : Of(parents_[k]);
+  }
+  void Join(const size_t a, const size_t b) {
+    const size_t group_a = Of(a), group_b = Of(b);
+    parents_[std::max(group_a, group_b)] = std::min(group_a, group_b);
+  }
+  // The largest group, the first of equally large ones.
+  [[nodiscard]] size_t Largest() const {
+    std::map<size_t, int> sizes;
+    for (size_t k = 0; k < parents_.size(); ++k) ++sizes[Of(k)];
+    size_t largest = 0;
+    for (const auto& [group, size] : sizes) {
+      if (size > sizes.at(largest)) largest = group;
+    }
+    return largest;
+  }
+
+ private:
+  std::vector<size_t> parents_;
+};
+
+bool IsCertain(const SessionLink& link) {
+  return link.localization.verdict == LocalizationVerdict::kLocalized;
+}
+
+// (first of the group <- session) for the sessions of a group, along the most
+// certain links.
+std::map<size_t, Rigid2> PlaceSessions(const size_t first,
+                                       const std::vector<SessionLink>& links) {
+  std::map<size_t, Rigid2> placed = {{first, Rigid2()}};
+  while (true) {
+    const SessionLink* best = nullptr;
+    for (const SessionLink& link : links) {
+      if (!IsCertain(link) ||
+          placed.count(link.first) == placed.count(link.second)) {
+        continue;
+      }
+      if (best == nullptr ||
+          *link.localization.score > *best->localization.score) {
+        best = &link;
+      }
+    }
+    if (best == nullptr) return placed;
+    const Rigid2& T_first_second = *best->localization.T_map_query;
+    if (placed.count(best->first) > 0) {
+      placed[best->second] = placed.at(best->first) * T_first_second;
+    } else {
+      placed[best->first] = placed.at(best->second) * T_first_second.Inverse();
+    }
+  }
+}
+
+absl::Status CheckPaths(const std::vector<std::string>& paths) {
+  for (size_t a = 0; a < paths.size(); ++a) {
+    for (size_t b = a + 1; b < paths.size(); ++b) {
+      std::error_code error;
+      if (std::filesystem::equivalent(paths[a], paths[b], error)) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(paths[b], " is given twice"));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Of the pair that is most alike.
+std::string DescribeStrangers(const MergingResult& result) {
+  const SessionLink& most_alike =
+      *std::max_element(result.links.begin(), result.links.end(),
+                        [](const SessionLink& a, const SessionLink& b) {
+                          return a.localization.score.value_or(0.) <
+                                 b.localization.score.value_or(0.);
+                        });
+  return absl::StrCat("no two of the maps are connected; ",
+                      result.sessions[most_alike.second].path, " in ",
+                      result.sessions[most_alike.first].path, ": ",
+                      most_alike.localization.reason);
+}
+
+// Accepted matches of the joined map: those within sessions, and between two
+// those that vote for where one lies in the other.
+std::vector<Match> CollectMatches(
+    const JoinedSessions& joined,
+    const std::map<size_t, std::vector<Match>>& within,
+    const std::vector<SessionLink>& links) {
+  std::vector<Match> matches;
+  for (const auto& [session, of_session] : within) {
+    const std::optional<size_t> part = joined.PartOf(session);
+    if (!part) continue;
+    for (const Match& match : of_session) {
+      matches.push_back(joined.Renamed(match, *part, *part));
+    }
+  }
+  for (const SessionLink& link : links) {
+    const std::optional<size_t> first = joined.PartOf(link.first);
+    const std::optional<size_t> second = joined.PartOf(link.second);
+    if (!first || !second || !IsCertain(link)) continue;
+    for (const size_t vote : link.localization.placements.front().votes) {
+      matches.push_back(
+          joined.Renamed(link.localization.matches[vote], *first, *second));
+    }
+  }
+  std::stable_sort(matches.begin(), matches.end(),
+                   [](const Match& a, const Match& b) {
+                     return IsBeforeByIds(a.pair, b.pair);
+                   });
+  return matches;
+}
+
+// Why the closures in the graph do not hold all joined sessions together; else
+// empty.
+std::string DescribeSplit(const JoinedSessions& joined,
+                          const std::vector<Closure>& closures,
+                          const std::vector<const Session*>& sessions) {
+  Groups groups(sessions.size());
+  for (const Closure& closure : closures) {
+    if (closure.status != ClosureStatus::kInGraph) continue;
+    groups.Join(joined.SessionOf(closure.match.pair.reference),
+                joined.SessionOf(closure.match.pair.query));
+  }
+  const size_t first = joined.sessions.front();
+  for (const size_t session : joined.sessions) {
+    if (groups.Of(session) == groups.Of(first)) continue;
+    return absl::StrCat("the optimised map contradicts all matches of ",
+                        sessions[session]->path, " with ",
+                        sessions[first]->path,
+                        ": they show places that look alike");
+  }
+  return "";
+}
+
+// Joins the sessions that `placed` lays somewhere and closes the joined graph.
+void JoinAndClose(const FoldCheckOptions& options,
+                  const LoopClosingOptions& stages,
+                  const std::vector<const Session*>& sessions,
+                  const std::map<size_t, Rigid2>& placed,
+                  const std::map<size_t, std::vector<Match>>& within,
+                  const std::set<int>& frozen_trajectories,
+                  const Executor& executor, StageClock* const clock,
+                  MergingResult* const result) {
+  JoinedSessions joined = JoinSessions(stages.closing, sessions, placed);
+  for (const auto& [session, pose] : placed) {
+    result->sessions[session].T_merged_session = pose;
+  }
+  result->closed = CloseGraph(
+      stages.closing,
+      {&joined.placed, &joined.odometry, &joined.places, &joined.point_clouds},
+      CollectMatches(joined, within, result->links), frozen_trajectories,
+      executor, clock);
+  clock->Begin("check for folds");
+  const auto overlaps = CheckOverlaps(options, stages.recognition, joined,
+                                      result->closed.pose_graph, executor);
+  for (const auto& [ids, overlap] : overlaps) {
+    result->num_overlapping += overlap.num_overlapping;
+    result->contradictions.insert(result->contradictions.end(),
+                                  overlap.contradictions.begin(),
+                                  overlap.contradictions.end());
+  }
+  result->refusal = DescribeSplit(joined, result->closed.closures, sessions);
+  if (result->refusal.empty()) {
+    result->refusal = DescribeFold(options, overlaps, sessions);
+  }
+  RemoveScanSubmaps(joined, &result->closed.pose_graph);
+  result->parts = std::move(joined.parts);
+  result->state = std::move(joined.state);
+}
+
+// Reads all sessions. Only the first map can stay where it is; said as soon as
+// it is known.
+absl::StatusOr<std::vector<Session>> ReadSessions(
+    const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
+    const std::vector<std::string>& paths,
+    const std::set<int>& frozen_trajectories, const Executor& executor,
+    StageClock* const clock) {
+  std::vector<Session> sessions;
+  for (const std::string& path : paths) {
+    absl::StatusOr<Session> session =
+        DescribeSession(stages, scan_places, path, std::nullopt, executor,
+                        clock->Begin(absl::StrCat("read and describe ", path)));
+    if (!session.ok()) return session.status();
+    sessions.push_back(*std::move(session));
+    if (sessions.size() > 1) continue;
+    const int num_freezable =
+        static_cast<int>(sessions.front().map.state.trajectories.size());
+    for (const int trajectory : frozen_trajectories) {
+      if (trajectory < num_freezable) continue;
+      return absl::InvalidArgumentError(absl::StrCat(
+          "trajectory ", trajectory, " is not of the first map, ",
+          paths.front(), ", and cannot be frozen: only one map can stay"));
+    }
+  }
+  return sessions;
+}
+
+// Localizes every session in every other, once.
+std::vector<SessionLink> LinkSessions(LocalizationOptions localization,
+                                      const LoopClosingOptions& stages,
+                                      const std::vector<Session>& sessions,
+                                      const Executor& executor,
+                                      StageClock* const clock) {
+  // Every match is of use here.
+  localization.num_first_places = std::numeric_limits<int>::max();
+  localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
+  std::vector<SessionLink> links;
+  for (size_t first = 0; first < sessions.size(); ++first) {
+    for (size_t second = first + 1; second < sessions.size(); ++second) {
+      links.push_back({first, second,
+                       LocalizeIn(localization, stages, sessions[first].map,
+                                  sessions[second].map, executor,
+                                  [&](const std::string& stage) {
+                                    return clock->Begin(
+                                        absl::StrFormat("%s, %d and %d", stage,
+                                                        first + 1, second + 1));
+                                  })});
+    }
+  }
+  return links;
+}
+
+// Why the sessions that are certain of each other make no map; else empty.
+std::string FindRefusal(const MergingResult& result,
+                        const std::map<size_t, Rigid2>& placed,
+                        const bool has_frozen_trajectories) {
+  if (placed.size() == 1) return DescribeStrangers(result);
+  if (has_frozen_trajectories && placed.count(0) == 0) {
+    return "the map with the frozen trajectories is not connected with others";
+  }
+  return "";
+}
+
+std::map<size_t, std::vector<Match>> MatchWithin(
+    const LoopClosingOptions& stages,
+    const std::vector<const Session*>& sessions,
+    const std::map<size_t, Rigid2>& placed, const Executor& executor,
+    StageClock* const clock) {
+  std::map<size_t, std::vector<Match>> within;
+  for (const auto& [k, T_merged_session] : placed) {
+    within[k] =
+        RecognizeWithin(stages.recognition,
+                        sessions[k]->map.trajectory_places(), executor, clock);
+  }
+  return within;
+}
+
+}  // namespace
+
+absl::StatusOr<MergingResult> MergeSessions(
+    const FoldCheckOptions& options, const LocalizationOptions& localization,
+    const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
+    const std::vector<std::string>& paths,
+    const std::set<int>& frozen_trajectories, const Executor& executor,
+    const StageCallback& on_stage) {
+  CHECK_EQ(Validate(options), "");
+  CHECK_GE(paths.size(), 2u);
+  if (absl::Status status = CheckPaths(paths); !status.ok()) return status;
+  MergingResult result;
+  StageClock clock(on_stage, &result.stage_seconds);
+  const absl::StatusOr<std::vector<Session>> sessions = ReadSessions(
+      scan_places, stages, paths, frozen_trajectories, executor, &clock);
+  if (!sessions.ok()) return sessions.status();
+  result.links =
+      LinkSessions(localization, stages, *sessions, executor, &clock);
+  Groups groups(sessions->size());
+  for (const SessionLink& link : result.links) {
+    if (IsCertain(link)) groups.Join(link.first, link.second);
+  }
+  for (size_t k = 0; k < paths.size(); ++k) {
+    result.sessions.push_back({paths[k], groups.Of(k), {}});
+  }
+  const std::map<size_t, Rigid2> placed =
+      PlaceSessions(groups.Largest(), result.links);
+  result.refusal = FindRefusal(result, placed, !frozen_trajectories.empty());
+  if (!result.refusal.empty()) {
+    clock.End();
+    return result;
+  }
+  std::vector<const Session*> pointers;
+  for (const Session& session : *sessions) pointers.push_back(&session);
+  JoinAndClose(options, stages, pointers, placed,
+               MatchWithin(stages, pointers, placed, executor, &clock),
+               frozen_trajectories, executor, &clock, &result);
+  clock.End();
+  return result;
+}
+
+absl::StatusOr<MergingResult> AttachQuery(
+    const FoldCheckOptions& options, const LoopClosingOptions& stages,
+    const Session& map, const Session& query, const Localization& localization,
+    const Executor& executor, const StageCallback& on_stage) {
+  CHECK_EQ(Validate(options), "");
+  CHECK(localization.T_map_query.has_value());
+  if (absl::Status status = CheckPaths({map.path, query.path}); !status.ok()) {
+    return status;
+  }
+  MergingResult result;
+  result.sessions = {{map.path, 0, {}}, {query.path, 0, {}}};
+  result.links = {{0, 1, localization}};
+  std::set<int> frozen_trajectories;
+  for (size_t k = 0; k < map.map.state.trajectories.size(); ++k) {
+    frozen_trajectories.insert(static_cast<int>(k));
+  }
+  StageClock clock(on_stage, &result.stage_seconds);
+  JoinAndClose(options, stages, {&map, &query},
+               {{0, Rigid2()}, {1, *localization.T_map_query}}, {},
+               frozen_trajectories, executor, &clock, &result);
+  clock.End();
+  return result;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A saved map, or a stretch of one, that is to be localized or merged.
+
+#ifndef CARTOGRAPHER_SDF_APPS_SESSION_H_
+#define CARTOGRAPHER_SDF_APPS_SESSION_H_
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_places.h"
+#include "cartographer_sdf/place_store/described_map.h"
+
+namespace cartographer_sdf {
+
+// Ids are those of the file.
+struct Session {
+  std::string path;
+  DescribedMap map;
+  // Grids of the submaps that are not in the file but were made of scans.
+  std::map<SubmapId, OccupancyGrid> scan_grids;
+};
+
+// All submaps that a file holds, and places made of the scans of trajectories
+// of which it holds none; with a window, places made of the scans in it alone.
+// See scan_places.h. Fails as ReadMap does.
+[[nodiscard]] absl::StatusOr<Session> DescribeSession(
+    const LoopClosingOptions& options, const ScanPlaceOptions& scan_places,
+    const std::string& path, const std::optional<TimeWindow>& window,
+    const Executor& executor, const ProgressCallback& on_progress = {});
+
+// Where the query lies in the map, by the matches of its places with all places
+// of the map, or with those that an index proposes (recognition.use_retrieval).
+[[nodiscard]] Localization LocalizeIn(const LocalizationOptions& options,
+                                      const LoopClosingOptions& stages,
+                                      const DescribedMap& map,
+                                      const DescribedMap& query,
+                                      const Executor& executor,
+                                      const StageCallback& on_stage = {});
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_APPS_SESSION_H_

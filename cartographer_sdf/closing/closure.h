@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A closure: a match that verification accepted, on its way into the pose
+// graph, and what became of it.
+
+#ifndef CARTOGRAPHER_SDF_CLOSING_CLOSURE_H_
+#define CARTOGRAPHER_SDF_CLOSING_CLOSURE_H_
+
+#include <vector>
+
+#include "cartographer_sdf/pose_graph/optimization.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/recognition/match.h"
+
+namespace cartographer_sdf {
+
+enum class ClosureStatus {
+  kSelected,       // consistent with the others; no constraints yet
+  kInGraph,        // its constraints are in the pose graph
+  kInconsistent,   // weightier closures contradict it, by the odometry between
+  kUnsupported,    // no other supports it, and it is not certain alone
+  kScansDisagree,  // too few scans of its nodes fit where it puts them
+  kOutlier,        // the optimised pose graph contradicts it
+  // Only beside a live Cartographer.
+  kReady,         // its constraints go in with the next optimisation
+  kDetectedOnly,  // injection is switched off, or there is no pose graph
+  kGone,          // a submap of it was trimmed or deleted before
+};
+// "selected", "in_graph", ...
+[[nodiscard]] const char* ClosureStatusName(ClosureStatus status);
+
+struct Closure {
+  Match match;
+  ClosureStatus status = ClosureStatus::kSelected;
+  // Inter-submap constraints; empty unless kInGraph.
+  std::vector<Constraint> constraints;
+  // Mean error of the constraints in the last optimised graph that had them;
+  // zero for a closure that never was in one.
+  ConstraintError graph_error;
+};
+
+// The accepted ones among the matches, in their order.
+[[nodiscard]] std::vector<Closure> MakeClosures(std::vector<Match> matches);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_CLOSING_CLOSURE_H_

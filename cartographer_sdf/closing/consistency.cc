@@ -1,0 +1,241 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/closing/consistency.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// A pose and the covariance of (x, y, yaw): translation in the target frame,
+// rotation about the origin of the source frame.
+struct UncertainPose {
+  Rigid2 pose;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+UncertainPose Compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c) {
+  // A small turn of b moves c by the lever from b to it.
+  const Eigen::Vector2d lever =
+      T_a_b.pose.RotationMatrix() * T_b_c.pose.translation();
+  Eigen::Matrix3d J_ab = Eigen::Matrix3d::Identity();
+  J_ab(0, 2) = -lever.y();
+  J_ab(1, 2) = lever.x();
+  Eigen::Matrix3d J_bc = Eigen::Matrix3d::Identity();
+  J_bc.topLeftCorner<2, 2>() = T_a_b.pose.RotationMatrix();
+  return {T_a_b.pose * T_b_c.pose,
+          J_ab * T_a_b.covariance * J_ab.transpose() +
+              J_bc * T_b_c.covariance * J_bc.transpose()};
+}
+
+Eigen::Matrix3d DiagonalCovariance(const double translation_sigma,
+                                   const double rotation_sigma) {
+  return Eigen::Vector3d(translation_sigma * translation_sigma,
+                         translation_sigma * translation_sigma,
+                         rotation_sigma * rotation_sigma)
+      .asDiagonal();
+}
+
+// (a <- b) by odometry; none between trajectories.
+std::optional<UncertainPose> Odometry(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& odometry, const SubmapId& a,
+    const SubmapId& b) {
+  if (a.trajectory != b.trajectory) return std::nullopt;
+  const OdometryPose& from = odometry.at(a);
+  const OdometryPose& to = odometry.at(b);
+  const double driven = std::abs(to.distance_driven - from.distance_driven);
+  const double rotation_sigma =
+      options.rotation_sigma_per_sqrt_meter * std::sqrt(driven);
+  const Rigid2 T_a_b = from.T_local_submap.Inverse() * to.T_local_submap;
+  // Rotation gathered evenly on the way moves the end by the lever of the
+  // second half, on average.
+  const double swing = rotation_sigma * driven / std::sqrt(3.);
+  const double slip = options.translation_sigma_per_meter * driven;
+  return UncertainPose{
+      T_a_b, DiagonalCovariance(std::hypot(swing, slip), rotation_sigma)};
+}
+
+PairPose Inverse(const PairPose& closure) {
+  PairPose inverse = closure;
+  inverse.reference = closure.query;
+  inverse.query = closure.reference;
+  inverse.T_reference_query = closure.T_reference_query.Inverse();
+  return inverse;
+}
+
+PairPose FromLowerToHigherId(const PairPose& closure) {
+  return closure.query < closure.reference ? Inverse(closure) : closure;
+}
+
+// a.reference -> a.query -> b.query -> b.reference -> a.reference.
+std::optional<UncertainPose> Cycle(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& odometry, const PairPose& a,
+    const PairPose& b) {
+  const std::optional<UncertainPose> queries =
+      Odometry(options, odometry, a.query, b.query);
+  const std::optional<UncertainPose> references =
+      Odometry(options, odometry, b.reference, a.reference);
+  if (!queries || !references) return std::nullopt;
+  const Eigen::Matrix3d covariance = DiagonalCovariance(
+      options.closure_translation_sigma_meters, options.closure_rotation_sigma);
+  return Compose(
+      Compose({a.T_reference_query, covariance}, *queries),
+      Compose({b.T_reference_query.Inverse(), covariance}, *references));
+}
+
+double TranslationSigma(const UncertainPose& pose) {
+  return std::sqrt(0.5 * pose.covariance.topLeftCorner<2, 2>().trace());
+}
+
+// One of a pair's symmetric table of verdicts.
+class VerdictTable {
+ public:
+  VerdictTable(const ConsistencyOptions& options,
+               const std::map<SubmapId, OdometryPose>& odometry,
+               const std::vector<PairPose>& closures)
+      : size_(closures.size()),
+        verdicts_(size_ * size_, CycleVerdict::kUninformative) {
+    for (size_t a = 0; a < size_; ++a) {
+      for (size_t b = a + 1; b < size_; ++b) {
+        verdicts_[a * size_ + b] = verdicts_[b * size_ + a] =
+            CheckCycle(options, odometry, closures[a], closures[b]);
+      }
+    }
+  }
+  CycleVerdict operator()(const size_t a, const size_t b) const {
+    return verdicts_[a * size_ + b];
+  }
+
+ private:
+  const size_t size_;
+  std::vector<CycleVerdict> verdicts_;
+};
+
+// Support and contradiction of closure k by the chosen closures.
+SelectionResult WeighAgainst(const VerdictTable& table,
+                             const std::vector<PairPose>& closures,
+                             const std::vector<size_t>& chosen,
+                             const size_t k) {
+  SelectionResult result{Selection::kSelected};
+  for (const size_t other : chosen) {
+    if (other == k) continue;
+    const double score = std::max(closures[other].score, 0.);
+    switch (table(k, other)) {
+      case CycleVerdict::kConsistent:
+        result.support += score;
+        break;
+      case CycleVerdict::kInconsistent:
+        result.contradiction += score;
+        break;
+      case CycleVerdict::kUninformative:
+        break;
+    }
+  }
+  return result;
+}
+
+// The closures that most others support come first, and set the frame in which
+// later ones are judged. The same whatever the order given.
+std::vector<size_t> InOrderOfWeight(const VerdictTable& table,
+                                    const std::vector<PairPose>& closures) {
+  std::vector<size_t> order(closures.size());
+  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
+  // Sums round the same.
+  std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
+    return IsBeforeByIds(closures[a], closures[b]);
+  });
+  std::vector<double> weight;
+  for (size_t k = 0; k < closures.size(); ++k) {
+    const SelectionResult weighed = WeighAgainst(table, closures, order, k);
+    weight.push_back(closures[k].score + weighed.support -
+                     weighed.contradiction);
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [&](const size_t a, const size_t b) { return weight[a] > weight[b]; });
+  return order;
+}
+
+}  // namespace
+
+std::string Validate(const ConsistencyOptions& options) {
+  if (!(options.rotation_sigma_per_sqrt_meter >= 0. &&
+        options.translation_sigma_per_meter >= 0. &&
+        options.closure_translation_sigma_meters > 0. &&
+        options.closure_rotation_sigma > 0.)) {
+    return "consistency: standard deviations must be positive";
+  }
+  if (!(options.max_mahalanobis_distance > 0. &&
+        options.max_cycle_sigma_meters > 0.)) {
+    return "max_mahalanobis_distance and max_cycle_sigma_meters "
+           "must be positive";
+  }
+  return "";
+}
+
+CycleVerdict CheckCycle(const ConsistencyOptions& options,
+                        const std::map<SubmapId, OdometryPose>& odometry,
+                        const PairPose& one, const PairPose& other) {
+  // Where a cycle begins and in which direction it runs makes a difference:
+  // covariances are those of either direction.
+  PairPose a = FromLowerToHigherId(one);
+  PairPose b = FromLowerToHigherId(other);
+  if (std::tie(b.reference, b.query) < std::tie(a.reference, a.query)) {
+    std::swap(a, b);
+  }
+  std::optional<UncertainPose> cycle = Cycle(options, odometry, a, b);
+  const std::optional<UncertainPose> crosswise =
+      Cycle(options, odometry, a, Inverse(b));
+  if (!cycle ||
+      (crosswise && TranslationSigma(*crosswise) < TranslationSigma(*cycle))) {
+    cycle = crosswise;
+  }
+  if (!cycle || TranslationSigma(*cycle) > options.max_cycle_sigma_meters) {
+    return CycleVerdict::kUninformative;
+  }
+  const Eigen::Vector3d error(cycle->pose.translation().x(),
+                              cycle->pose.translation().y(),
+                              cycle->pose.rotation());
+  const double squared = error.dot(cycle->covariance.ldlt().solve(error));
+  return squared <= options.max_mahalanobis_distance *
+                        options.max_mahalanobis_distance
+             ? CycleVerdict::kConsistent
+             : CycleVerdict::kInconsistent;
+}
+
+std::vector<SelectionResult> SelectConsistent(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& odometry,
+    const std::vector<PairPose>& closures) {
+  CHECK_EQ(Validate(options), "");
+  const VerdictTable table(options, odometry, closures);
+  std::vector<size_t> chosen;
+  std::vector<SelectionResult> results(closures.size());
+  for (const size_t k : InOrderOfWeight(table, closures)) {
+    results[k] = WeighAgainst(table, closures, chosen, k);
+    if (results[k].contradiction > results[k].support) {
+      results[k].selection = Selection::kInconsistent;
+    } else {
+      chosen.push_back(k);
+    }
+  }
+  for (const size_t k : chosen) {
+    results[k] = WeighAgainst(table, closures, chosen, k);
+    if (results[k].support < options.min_support &&
+        closures[k].score < options.min_unsupported_score) {
+      results[k].selection = Selection::kUnsupported;
+    }
+  }
+  return results;
+}
+
+}  // namespace cartographer_sdf

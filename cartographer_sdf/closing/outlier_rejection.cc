@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/closing/outlier_rejection.h"
+
+#include <algorithm>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+ConstraintError MeanError(const PoseGraph& pose_graph,
+                          const std::vector<Constraint>& constraints) {
+  ConstraintError mean;
+  for (const Constraint& constraint : constraints) {
+    const ConstraintError error = ConstraintResidual(pose_graph, constraint);
+    mean.translation += error.translation;
+    mean.rotation += error.rotation;
+  }
+  mean.translation /= static_cast<double>(constraints.size());
+  mean.rotation /= static_cast<double>(constraints.size());
+  return mean;
+}
+
+// In units of what is allowed.
+double Excess(const OutlierRejectionOptions& options,
+              const ConstraintError& error) {
+  return std::max(error.translation / options.max_translation_error_meters,
+                  error.rotation / options.max_rotation_error);
+}
+
+PoseGraph WithClosures(PoseGraph pose_graph,
+                       const std::vector<Closure>& closures) {
+  for (const Closure& closure : closures) {
+    pose_graph.constraints.insert(pose_graph.constraints.end(),
+                                  closure.constraints.begin(),
+                                  closure.constraints.end());
+  }
+  return pose_graph;
+}
+
+void MeasureErrors(const PoseGraph& pose_graph,
+                   std::vector<Closure>* const closures) {
+  for (Closure& closure : *closures) {
+    if (closure.status == ClosureStatus::kInGraph) {
+      closure.graph_error = MeanError(pose_graph, closure.constraints);
+    }
+  }
+}
+
+// Removes the closures that the graph contradicts most; false where there is
+// none.
+bool RejectWorst(const OutlierRejectionOptions& options,
+                 std::vector<Closure>* const closures) {
+  std::vector<std::optional<ConstraintError>> errors;
+  for (const Closure& closure : *closures) {
+    errors.push_back(closure.status == ClosureStatus::kInGraph
+                         ? std::make_optional(closure.graph_error)
+                         : std::nullopt);
+  }
+  const std::vector<size_t> outliers = FindOutliers(options, errors);
+  for (const size_t k : outliers) {
+    (*closures)[k].status = ClosureStatus::kOutlier;
+    (*closures)[k].constraints.clear();
+  }
+  return !outliers.empty();
+}
+
+}  // namespace
+
+std::string Validate(const OutlierRejectionOptions& options) {
+  if (!(options.max_translation_error_meters > 0. &&
+        options.max_rotation_error > 0.)) {
+    return "max_translation_error_meters and max_rotation_error must be "
+           "positive";
+  }
+  if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {
+    return "max_num_rounds must lie between 0 and 1000";
+  }
+  return "";
+}
+
+std::vector<size_t> FindOutliers(
+    const OutlierRejectionOptions& options,
+    const std::vector<std::optional<ConstraintError>>& errors) {
+  double worst = 0.;
+  for (const std::optional<ConstraintError>& error : errors) {
+    if (error) worst = std::max(worst, Excess(options, *error));
+  }
+  std::vector<size_t> outliers;
+  if (worst <= 1.) return outliers;
+  for (size_t k = 0; k < errors.size(); ++k) {
+    if (errors[k] && Excess(options, *errors[k]) > std::max(1., 0.5 * worst)) {
+      outliers.push_back(k);
+    }
+  }
+  return outliers;
+}
+
+OptimizedGraph OptimizeAndRejectOutliers(
+    const OutlierRejectionOptions& options,
+    const OptimizationOptions& optimization,
+    const std::set<int>& frozen_trajectories, const PoseGraph& pose_graph,
+    std::vector<Closure>* const closures, const ProgressCallback& on_progress) {
+  CHECK_EQ(Validate(options), "");
+  OptimizedGraph result;
+  for (int round = 0;; ++round) {
+    // From the given poses each time: a removed closure leaves no trace.
+    result.pose_graph = WithClosures(pose_graph, *closures);
+    // Nothing new: the map stays as it is, to the last bit.
+    if (result.pose_graph.constraints.size() == pose_graph.constraints.size()) {
+      return result;
+    }
+    result.optimizations.push_back(
+        Optimize(optimization, frozen_trajectories, &result.pose_graph));
+    MeasureErrors(result.pose_graph, closures);
+    if (on_progress) {
+      on_progress(static_cast<double>(round + 1) /
+                  (options.max_num_rounds + 1));
+    }
+    // The last round's graph is optimised without what was removed before;
+    // nothing may be removed after it.
+    if (round >= options.max_num_rounds || !RejectWorst(options, closures)) {
+      return result;
+    }
+  }
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The one way from matches to an optimised pose graph: a mutually consistent
+// set of closures is selected, turned into constraints and optimised, and
+// outliers are rejected. close_loops and merge run all of it (CloseGraph);
+// beside a live Cartographer, which optimises by itself, the first two stages
+// run each time there is a new match.
+
+#ifndef CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
+#define CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/closing/closure.h"
+#include "cartographer_sdf/closing/consistency.h"
+#include "cartographer_sdf/closing/constraint_generation.h"
+#include "cartographer_sdf/closing/outlier_rejection.h"
+#include "cartographer_sdf/closing/torn_submaps.h"
+#include "cartographer_sdf/execution/executor.h"
+#include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/pbstream/point_cloud.h"
+#include "cartographer_sdf/place/place.h"
+#include "cartographer_sdf/place/trajectory_places.h"
+#include "cartographer_sdf/pose_graph/optimization.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+
+namespace cartographer_sdf {
+
+struct ClosingOptions {
+  // Whether closures of submaps that their own scans show to be torn have zero
+  // weight: they neither support nor contradict others, and enter the graph
+  // only where others support them.
+  bool detect_torn_submaps = true;
+  TearOptions tear;
+  ConsistencyOptions consistency;
+  ConstraintOptions constraints;
+  OptimizationOptions optimization;
+  // Whether odometry weights that the map itself shows (odometry_weights.h)
+  // take the place of those of `optimization`.
+  bool infer_odometry_weights = true;
+  OutlierRejectionOptions outlier_rejection;
+};
+[[nodiscard]] std::string Validate(const ClosingOptions& options);
+
+// `options.optimization`, with the odometry weights that the map shows where
+// they are to be inferred and it shows any.
+[[nodiscard]] OptimizationOptions OptimizationInForce(
+    const ClosingOptions& options, const PoseGraph& pose_graph);
+
+// Sets the status of each closure that still is to be decided (selected,
+// inconsistent, unsupported or ready) by its consistency with the others.
+// Closures that are in the graph or were only detected take part with their
+// weight; others take no part. Returns the indices of those in the graph that
+// the others contradict.
+std::vector<size_t> SelectClosures(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& odometry,
+    const std::map<SubmapId, Tear>& torn_submaps,
+    std::vector<Closure>* closures);
+
+// Gives the selected closures their constraints: kInGraph, or kScansDisagree
+// where there are too few. `places` has both places of each.
+void GenerateConstraints(const ConstraintOptions& options,
+                         const std::map<SubmapId, InsertedNodes>& nodes,
+                         const std::map<SubmapId, Place>& places,
+                         const ScansByNode& scans, const Executor& executor,
+                         std::vector<Closure>* closures);
+
+// A map as CloseGraph takes it; nothing is owned.
+struct GraphToClose {
+  // The optimisation starts from its poses.
+  const PoseGraph* pose_graph;
+  const std::map<SubmapId, OdometryPose>* odometry;
+  const std::map<SubmapId, Place>* places;
+  // Of all nodes that have range data, in the frames of their nodes.
+  const std::map<NodeId, PointCloud2>* point_clouds;
+};
+
+struct ClosedGraph {
+  std::vector<Closure> closures;  // of all accepted matches, in their order
+  // Empty where they were not looked for.
+  std::map<SubmapId, Tear> torn_submaps;
+  // Optimised, with the new constraints at the end; as it was where none is.
+  PoseGraph pose_graph;
+  std::vector<OptimizationSummary> optimizations;  // one for each round
+};
+
+// Frozen trajectories stay where they are. `options.optimization` is in force
+// as it stands: inferring the weights is up to the caller, who knows which part
+// of the graph is of which map.
+[[nodiscard]] ClosedGraph CloseGraph(const ClosingOptions& options,
+                                     const GraphToClose& graph,
+                                     std::vector<Match> matches,
+                                     const std::set<int>& frozen_trajectories,
+                                     const Executor& executor,
+                                     StageClock* clock);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_

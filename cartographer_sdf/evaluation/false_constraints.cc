@@ -1,0 +1,446 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/evaluation/false_constraints.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "cartographer_sdf/closing/constraint_generation.h"
+#include "cartographer_sdf/closing/pipeline.h"
+#include "cartographer_sdf/geometry/distinct_poses.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/simulation/random_numbers.h"
+#include "cartographer_sdf/verification/agreement.h"
+#include "cartographer_sdf/verification/registration.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Overlap of what counts as one place [m^2].
+constexpr double kMinOverlapArea = 20.;
+// A pose this far from the map's is wrong [m], [rad].
+constexpr PoseTolerance kMinError{1.2, 0.4};
+// Slides along the walls [m].
+constexpr double kMinSlide = 1.5;
+constexpr double kMaxSlide = 6.;
+constexpr double kSlideStep = 0.25;
+// Half turns are tried about points within so many steps of 1 m.
+constexpr int kMaxHalfTurnSteps = 2;
+constexpr int kNumAgreementPoints = 500;
+// Pairs of different places that are matched to find aliased ones.
+constexpr size_t kNumTwinCandidates = 600;
+// Neighbours on either side of a row's first pair, and the least of a row.
+constexpr int kRowReach = 2;
+constexpr size_t kMinRowPairs = 3;
+constexpr size_t kMaxRowPairs = 6;
+constexpr int kNumAttempts = 10;
+
+ConstraintOptions ForgingOptions(const LoopClosingOptions& loop_closing,
+                                 const FalsificationOptions& options) {
+  ConstraintOptions constraint_options = loop_closing.closing.constraints;
+  constraint_options.num_nodes_per_submap = options.num_nodes_per_submap;
+  constraint_options.min_num_constraints = 1;
+  constraint_options.min_hit_ratio = options.min_hit_ratio;
+  return constraint_options;
+}
+
+// The scans that constraints may need.
+ScansByNode ScansToRegister(const ConstraintOptions& options,
+                            const DescribedMap& map) {
+  ScansByNode scans;
+  for (const auto& [submap, nodes] : FindInsertedNodes(map.state.pose_graph)) {
+    if (map.places.count(submap) == 0) continue;
+    for (const auto& [node, T_submap_node] : ChooseNodes(options, nodes)) {
+      const auto cloud = map.point_clouds.find(node);
+      if (cloud != map.point_clouds.end()) {
+        scans.emplace(node, ToScan(cloud->second));
+      }
+    }
+  }
+  return scans;
+}
+
+// Makes wrong poses of pairs of a map's submaps, and constraints of them.
+class Forger {
+ public:
+  Forger(const LoopClosingOptions& loop_closing,
+         const FalsificationOptions& options, const DescribedMap& map,
+         const ScansByNode& scans)
+      : loop_closing_(loop_closing),
+        options_(options),
+        map_(map),
+        scans_(scans),
+        nodes_(FindInsertedNodes(map.state.pose_graph)),
+        random_(options.seed) {
+    for (auto i = map.places.begin(); i != map.places.end(); ++i) {
+      for (auto j = std::next(i); j != map.places.end(); ++j) {
+        if (i->first.trajectory == j->first.trajectory &&
+            j->first.index - i->first.index <
+                loop_closing.recognition.min_index_gap) {
+          continue;
+        }
+        const double overlap = OverlapArea(i->second.surface, j->second.surface,
+                                           PoseByMap(i->first, j->first));
+        if (overlap >= kMinOverlapArea) near_.emplace_back(i->first, j->first);
+        if (overlap == 0.) far_.emplace_back(i->first, j->first);
+      }
+    }
+    Shuffle(&near_);
+    Shuffle(&far_);
+    if (far_.size() > kNumTwinCandidates) far_.resize(kNumTwinCandidates);
+  }
+
+  // Finds different places that look alike (perceptual aliasing).
+  void MatchAliases(const Executor& executor) {
+    std::vector<std::optional<Match>> matches(far_.size());
+    executor(far_.size(), [&](const size_t k) {
+      matches[k] = MatchPlaces(loop_closing_.recognition.match,
+                               map_.places.at(far_[k].first),
+                               map_.places.at(far_[k].second));
+    });
+    for (const std::optional<Match>& match : matches) {
+      if (match) aliases_.push_back(match->pair);
+    }
+    std::stable_sort(
+        aliases_.begin(), aliases_.end(),
+        [](const PairPose& a, const PairPose& b) { return a.score > b.score; });
+  }
+
+  // The constraints of one more pair, or row, of that kind; empty where the
+  // map has no more.
+  std::vector<Constraint> Forge(const FalseKind kind) {
+    switch (kind) {
+      case FalseKind::kCorridor:
+      case FalseKind::kDoor:
+      case FalseKind::kHalfTurn:
+        return ForgeNear(kind);
+      case FalseKind::kTwin:
+        return ForgeTwin();
+      case FalseKind::kRow:
+        return ForgeRow();
+      case FalseKind::kRandom:
+        return ForgeRandom();
+    }
+    LOG(FATAL) << "not a kind: " << static_cast<int>(kind);
+  }
+
+ private:
+  using IdPair = std::pair<SubmapId, SubmapId>;
+
+  template <typename T>
+  void Shuffle(std::vector<T>* const items) {
+    for (size_t k = items->size(); k > 1; --k) {
+      std::swap((*items)[k - 1], (*items)[random_.Index(static_cast<int>(k))]);
+    }
+  }
+
+  [[nodiscard]] Rigid2 PoseByMap(const SubmapId& reference,
+                                 const SubmapId& query) const {
+    const auto& poses = map_.state.pose_graph.submap_poses;
+    return poses.at(reference).Inverse() * poses.at(query);
+  }
+
+  [[nodiscard]] const RegistrationOptions& Registration() const {
+    return loop_closing_.recognition.match.verification.registration;
+  }
+
+  [[nodiscard]] const SurfaceModel& Surface(const SubmapId& id) const {
+    return map_.places.at(id).surface;
+  }
+
+  [[nodiscard]] std::vector<Constraint> MakeConstraints(
+      const PairPose& pair, const bool with_scans) const {
+    ConstraintOptions constraint_options =
+        ForgingOptions(loop_closing_, options_);
+    for (const Constraint& constraint : map_.state.pose_graph.constraints) {
+      if (constraint.tag != Constraint::Tag::kInterSubmap) continue;
+      constraint_options.translation_weight = constraint.translation_weight;
+      constraint_options.rotation_weight = constraint.rotation_weight;
+      break;
+    }
+    return GenerateConstraints(constraint_options, pair, nodes_,
+                               Surface(pair.reference), Surface(pair.query),
+                               with_scans ? scans_ : ScansByNode());
+  }
+
+  [[nodiscard]] bool IsWrong(const IdPair& ids, const Rigid2& pose) const {
+    return !AreNear(pose, PoseByMap(ids.first, ids.second),
+                    ObservedCentroid(Surface(ids.second)), kMinError);
+  }
+
+  [[nodiscard]] double Alikeness(const IdPair& ids, const Rigid2& pose) const {
+    const auto measure = [](const SurfaceModel& model,
+                            const SurfaceModel& points, const Rigid2& T) {
+      AgreementOptions agreement_options;
+      agreement_options.max_num_points = kNumAgreementPoints;
+      const DirectedAgreement agreement =
+          MeasureAgreement(agreement_options, model, points.walls, T);
+      return agreement.HitRatio() - 2. * agreement.ContradictionRatio();
+    };
+    const SurfaceModel& reference = Surface(ids.first);
+    const SurfaceModel& query = Surface(ids.second);
+    return measure(reference, query, pose) +
+           measure(query, reference, pose.Inverse());
+  }
+
+  // The wrong pose, registered, that looks most alike; none where none is.
+  [[nodiscard]] std::optional<Rigid2> BestWrong(
+      const IdPair& ids, const std::vector<Rigid2>& guesses) const {
+    std::optional<Rigid2> best;
+    double best_alikeness = 0.;
+    for (const Rigid2& guess : guesses) {
+      const std::optional<Rigid2> pose = RegisterSubmaps(
+          Registration(), Surface(ids.first), Surface(ids.second), guess);
+      if (!pose || !IsWrong(ids, *pose)) continue;
+      const double alikeness = Alikeness(ids, *pose);
+      if (!best || alikeness > best_alikeness) {
+        best = pose;
+        best_alikeness = alikeness;
+      }
+    }
+    return best;
+  }
+
+  // In the frame of the first; none where the pair can't be registered.
+  [[nodiscard]] std::optional<Eigen::Vector2d> DirectionOfWalls(
+      const IdPair& ids) const {
+    const std::optional<Rigid2> pose =
+        RegisterSubmaps(Registration(), Surface(ids.first), Surface(ids.second),
+                        PoseByMap(ids.first, ids.second));
+    if (!pose) return std::nullopt;
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
+               NormalScatter(Registration(), Surface(ids.first),
+                             Surface(ids.second), *pose))
+        .eigenvectors()
+        .col(0);
+  }
+
+  [[nodiscard]] std::vector<Rigid2> Guesses(const FalseKind kind,
+                                            const IdPair& ids) {
+    const Rigid2 T_reference_query = PoseByMap(ids.first, ids.second);
+    std::vector<Rigid2> guesses;
+    if (kind == FalseKind::kHalfTurn) {
+      const Eigen::Vector2d middle =
+          0.5 * (ObservedCentroid(Surface(ids.first)) +
+                 T_reference_query * ObservedCentroid(Surface(ids.second)));
+      for (int i = -kMaxHalfTurnSteps; i <= kMaxHalfTurnSteps; ++i) {
+        for (int j = -kMaxHalfTurnSteps; j <= kMaxHalfTurnSteps; ++j) {
+          const Eigen::Vector2d centre = middle + Eigen::Vector2d(i, j);
+          guesses.push_back(Rigid2(2. * centre, M_PI) * T_reference_query);
+        }
+      }
+      return guesses;
+    }
+    const std::optional<Eigen::Vector2d> direction = DirectionOfWalls(ids);
+    if (!direction) return guesses;
+    const auto slide = [&](const double distance) {
+      guesses.push_back(Rigid2(distance * *direction, 0.) * T_reference_query);
+    };
+    if (kind == FalseKind::kCorridor) {
+      slide((random_.Chance(0.5) ? 1. : -1.) *
+            random_.Uniform(kMinSlide, kMaxSlide));
+      return guesses;
+    }
+    for (double d = kMinSlide; d <= kMaxSlide; d += kSlideStep) {
+      slide(d);
+      slide(-d);
+    }
+    return guesses;
+  }
+
+  std::vector<Constraint> ForgeNear(const FalseKind kind) {
+    while (!near_.empty()) {
+      const IdPair ids = near_.back();
+      near_.pop_back();
+      for (int attempt = 0; attempt < kNumAttempts; ++attempt) {
+        const std::optional<Rigid2> pose = BestWrong(ids, Guesses(kind, ids));
+        if (!pose) continue;
+        std::vector<Constraint> constraints =
+            MakeConstraints({ids.first, ids.second, *pose}, true);
+        if (!constraints.empty()) return constraints;
+        // Other kinds would guess the same again.
+        if (kind != FalseKind::kCorridor) break;
+      }
+    }
+    return {};
+  }
+
+  std::vector<Constraint> ForgeTwin() {
+    while (next_alias_ < aliases_.size()) {
+      std::vector<Constraint> constraints =
+          MakeConstraints(aliases_[next_alias_++], true);
+      if (!constraints.empty()) return constraints;
+    }
+    return {};
+  }
+
+  // A twin, and what its neighbours then are to each other by local SLAM.
+  std::vector<Constraint> ForgeRow() {
+    while (next_alias_ < aliases_.size()) {
+      const PairPose& first = aliases_[next_alias_++];
+      std::vector<Constraint> row = MakeConstraints(first, true);
+      if (row.empty()) continue;
+      size_t num_pairs = 1;
+      for (int i = -kRowReach; i <= kRowReach; ++i) {
+        for (int j = -kRowReach; j <= kRowReach; ++j) {
+          if ((i == 0 && j == 0) || num_pairs == kMaxRowPairs) continue;
+          const std::optional<PairPose> pair = Neighbours(first, i, j);
+          if (!pair) continue;
+          const std::vector<Constraint> constraints =
+              MakeConstraints(*pair, true);
+          row.insert(row.end(), constraints.begin(), constraints.end());
+          if (!constraints.empty()) ++num_pairs;
+        }
+      }
+      if (num_pairs >= kMinRowPairs) return row;
+    }
+    return {};
+  }
+
+  [[nodiscard]] std::optional<PairPose> Neighbours(const PairPose& pair,
+                                                   const int i,
+                                                   const int j) const {
+    PairPose neighbours = pair;
+    neighbours.reference.index += i;
+    neighbours.query.index += j;
+    if (map_.places.count(neighbours.reference) == 0 ||
+        map_.places.count(neighbours.query) == 0) {
+      return std::nullopt;
+    }
+    const auto local = [&](const SubmapId& id) {
+      return map_.state.submaps.at(id).T_local_submap;
+    };
+    neighbours.T_reference_query =
+        local(neighbours.reference).Inverse() * local(pair.reference) *
+        pair.T_reference_query * local(pair.query).Inverse() *
+        local(neighbours.query);
+    if (OverlapArea(Surface(neighbours.reference), Surface(neighbours.query),
+                    neighbours.T_reference_query) < kMinOverlapArea) {
+      return std::nullopt;
+    }
+    return neighbours;
+  }
+
+  std::vector<Constraint> ForgeRandom() {
+    const int size = static_cast<int>(map_.places.size());
+    for (int attempt = 0; attempt < kNumAttempts; ++attempt) {
+      const int i = random_.Index(size);
+      const int j = random_.Index(size);
+      const auto& reference = std::next(map_.places.begin(), std::min(i, j));
+      const auto& query = std::next(map_.places.begin(), std::max(i, j));
+      const std::vector<Eigen::Vector2d>& points =
+          reference->second.surface.observed_points;
+      const Eigen::Vector2d middle =
+          points[random_.Index(static_cast<int>(points.size()))];
+      const Rigid2 pose = Rigid2(middle, random_.Uniform(-M_PI, M_PI)) *
+                          Rigid2(-ObservedCentroid(query->second.surface), 0.);
+      const IdPair ids{reference->first, query->first};
+      if ((ids.first.trajectory == ids.second.trajectory &&
+           ids.second.index - ids.first.index <
+               loop_closing_.recognition.min_index_gap) ||
+          !IsWrong(ids, pose)) {
+        continue;
+      }
+      return MakeConstraints({ids.first, ids.second, pose}, false);
+    }
+    return {};
+  }
+
+  const LoopClosingOptions& loop_closing_;
+  const FalsificationOptions& options_;
+  const DescribedMap& map_;
+  const ScansByNode& scans_;
+  const std::map<SubmapId, InsertedNodes> nodes_;
+  RandomNumbers random_;
+  // Pairs that see one place by the map, and that do not.
+  std::vector<IdPair> near_;
+  std::vector<IdPair> far_;
+  std::vector<PairPose> aliases_;  // best first
+  size_t next_alias_ = 0;
+};
+
+}  // namespace
+
+const char* FalseKindName(const FalseKind kind) {
+  switch (kind) {
+    case FalseKind::kCorridor:
+      return "corridor";
+    case FalseKind::kDoor:
+      return "door";
+    case FalseKind::kHalfTurn:
+      return "half_turn";
+    case FalseKind::kTwin:
+      return "twin";
+    case FalseKind::kRow:
+      return "row";
+    case FalseKind::kRandom:
+      return "random";
+  }
+  LOG(FATAL) << "not a kind: " << static_cast<int>(kind);
+}
+
+std::vector<FalseKind> AllFalseKinds() {
+  return {FalseKind::kCorridor, FalseKind::kDoor, FalseKind::kHalfTurn,
+          FalseKind::kTwin,     FalseKind::kRow,  FalseKind::kRandom};
+}
+
+std::string Validate(const FalsificationOptions& options) {
+  if (options.num_pairs < 1 || options.num_nodes_per_submap < 1) {
+    return "num_pairs and num_nodes_per_submap must be positive";
+  }
+  if (!(options.min_hit_ratio >= 0. && options.min_hit_ratio <= 1.)) {
+    return "min_hit_ratio must lie between 0 and 1";
+  }
+  return "";
+}
+
+absl::StatusOr<FalsifiedMap> FalsifyMap(
+    const LoopClosingOptions& loop_closing, const FalsificationOptions& options,
+    const std::string& path, const std::set<int>& frozen_trajectories,
+    const Executor& executor) {
+  CHECK_EQ(Validate(loop_closing), "");
+  CHECK_EQ(Validate(options), "");
+  const absl::StatusOr<DescribedMap> map =
+      DescribeMap(loop_closing.place, loop_closing.recognition.match, path,
+                  executor, {}, PointClouds::kKeep);
+  if (!map.ok()) return map.status();
+  const PoseGraph& pose_graph = map->state.pose_graph;
+  FalsifiedMap result;
+  result.pose_graph = pose_graph;
+  if (map->places.empty()) return result;
+
+  const ScansByNode scans =
+      ScansToRegister(ForgingOptions(loop_closing, options), *map);
+  Forger forger(loop_closing, options, *map, scans);
+  forger.MatchAliases(executor);
+  size_t pair = 0;
+  for (const FalseKind kind : options.kinds) {
+    for (int k = 0; k < options.num_pairs; ++k) {
+      const std::vector<Constraint> constraints = forger.Forge(kind);
+      if (constraints.empty()) break;
+      for (const Constraint& constraint : constraints) {
+        result.false_constraints.push_back(
+            {result.pose_graph.constraints.size(), kind, pair});
+        result.pose_graph.constraints.push_back(constraint);
+      }
+      ++pair;
+    }
+  }
+  if (!result.false_constraints.empty()) {
+    result.optimization =
+        Optimize(OptimizationInForce(loop_closing.closing, pose_graph),
+                 frozen_trajectories, &result.pose_graph);
+  }
+  return result;
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// When two poses of the same pair of frames count as one, and the selection of
+// distinct ones.
+
+#ifndef CARTOGRAPHER_SDF_GEOMETRY_DISTINCT_POSES_H_
+#define CARTOGRAPHER_SDF_GEOMETRY_DISTINCT_POSES_H_
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+
+namespace cartographer_sdf {
+
+struct PoseTolerance {
+  double distance;  // [m]
+  double rotation;  // [rad]
+};
+
+// Whether both poses take the point `p_b` to within the tolerance of each other
+// and differ in rotation by less than the tolerance.
+[[nodiscard]] inline bool AreNear(const Rigid2& T_a_b,
+                                  const Rigid2& other_T_a_b,
+                                  const Eigen::Vector2d& p_b,
+                                  const PoseTolerance& tolerance) {
+  return (T_a_b * p_b - other_T_a_b * p_b).norm() < tolerance.distance &&
+         std::abs(NormalizeAngle(T_a_b.rotation() - other_T_a_b.rotation())) <
+             tolerance.rotation;
+}
+
+constexpr size_t kNoLimit = std::numeric_limits<size_t>::max();
+
+// The first of every group of items whose poses are near each other, at most
+// `max_num_items`. `items` come in order of preference; pose_of(item) is (a <-
+// b).
+template <typename Item, typename PoseOf>
+[[nodiscard]] std::vector<Item> KeepDistinct(const std::vector<Item>& items,
+                                             const PoseOf& pose_of,
+                                             const Eigen::Vector2d& p_b,
+                                             const PoseTolerance& tolerance,
+                                             const size_t max_num_items) {
+  std::vector<Item> kept;
+  for (const Item& item : items) {
+    if (kept.size() >= max_num_items) break;
+    const bool is_distinct =
+        std::none_of(kept.begin(), kept.end(), [&](const Item& better) {
+          return AreNear(pose_of(item), pose_of(better), p_b, tolerance);
+        });
+    if (is_distinct) kept.push_back(item);
+  }
+  return kept;
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_GEOMETRY_DISTINCT_POSES_H_

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_
+#define CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/submap_id.h"
+
+namespace cartographer_sdf {
+
+// Where a query submap lies in the frame of a reference submap, and how certain
+// that is.
+struct PairPose {
+  SubmapId reference;
+  SubmapId query;
+  Rigid2 T_reference_query;
+  // Log-odds of being right; comparable across pairs and maps.
+  double score = 0.;
+};
+
+// The order of all lists of pairs.
+[[nodiscard]] inline bool IsBeforeByIds(const PairPose& a, const PairPose& b) {
+  return a.reference != b.reference ? a.reference < b.reference
+                                    : a.query < b.query;
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/localization/confirmation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace cartographer_sdf {
+namespace {
+
+// Of the smaller observed area; less says little.
+constexpr double kMinOverlap = 0.4;
+
+// How uncertain a prediction may be [m]: what registration recovers with ease
+// where the pair is to agree, half of that where it is held against the
+// placement.
+constexpr double kMaxSigma = 0.7;
+constexpr double kMaxContradictionSigma = 0.3;
+
+// Of the translation after a way through a map [m], as closing/consistency has
+// it.
+double DriftSigma(const ConsistencyOptions& options, const double way) {
+  const double swing = options.rotation_sigma_per_sqrt_meter * std::sqrt(way) *
+                       way / std::sqrt(3.);
+  return std::hypot(swing, options.translation_sigma_per_meter * way);
+}
+
+// A pair of places that the placement lays over each other.
+struct PairToCheck {
+  const Place* reference;
+  const Place* query;
+  Rigid2 T_reference_query;  // predicted
+  double way;                // from the nearest vote, through both maps [m]
+  std::optional<Match> agreeing;
+  std::optional<Match> contradicting;
+};
+
+class Confirmer {
+ public:
+  Confirmer(const PlacementOptions& options,
+            const ConsistencyOptions& consistency,
+            const MatchOptions& match_options, const PlacedMap& map,
+            const PlacedMap& query, std::vector<PairPose> votes)
+      : options_(options),
+        consistency_(consistency),
+        match_options_(match_options),
+        map_(map),
+        query_(query),
+        maps_{map.layout, query.layout},
+        votes_(std::move(votes)) {
+    for (const PairPose& vote : votes_)
+      done_.insert({vote.reference, vote.query});
+  }
+
+  // Verifies the pairs that follow from the votes so far, nearest first; false
+  // where there is none left.
+  bool Spread(const size_t max_num_pairs, const Executor& executor,
+              Confirmation* const confirmation) {
+    std::vector<PairToCheck> pairs = PairsToCheck();
+    if (pairs.empty()) return false;
+    pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(
+                                    std::min(pairs.size(), max_num_pairs)),
+                pairs.end());
+    executor(pairs.size(), [&](const size_t k) { Check(&pairs[k]); });
+    for (PairToCheck& pair : pairs) {
+      done_.insert({pair.reference->id, pair.query->id});
+      if (pair.agreeing) {
+        votes_.push_back(pair.agreeing->pair);
+        confirmation->agreeing.push_back(*std::move(pair.agreeing));
+      }
+      if (pair.contradicting) {
+        confirmation->contradicting.push_back(*std::move(pair.contradicting));
+      }
+    }
+    num_checked_ += pairs.size();
+    return true;
+  }
+
+  [[nodiscard]] size_t num_checked() const { return num_checked_; }
+
+ private:
+  [[nodiscard]] std::vector<PairToCheck> PairsToCheck() const {
+    std::vector<PairToCheck> pairs;
+    for (const auto& [reference_id, reference] : *map_.places) {
+      if (map_.layout->T_map_submap.count(reference_id) == 0) continue;
+      for (const auto& [query_id, query] : *query_.places) {
+        if (done_.count({reference_id, query_id}) > 0) continue;
+        std::optional<PairToCheck> pair = Predict(reference, query);
+        if (pair && DriftSigma(consistency_, pair->way) <= kMaxSigma &&
+            OverlapsEnough(reference.surface, query.surface,
+                           pair->T_reference_query)) {
+          pairs.push_back(*std::move(pair));
+        }
+      }
+    }
+    std::stable_sort(pairs.begin(), pairs.end(),
+                     [](const PairToCheck& a, const PairToCheck& b) {
+                       return a.way < b.way;
+                     });
+    return pairs;
+  }
+
+  // By the vote nearest to both.
+  [[nodiscard]] std::optional<PairToCheck> Predict(const Place& reference,
+                                                   const Place& query) const {
+    const PairPose* nearest = nullptr;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const PairPose& vote : votes_) {
+      const std::optional<double> in_map =
+          map_.layout->distances.Between(vote.reference, reference.id);
+      const std::optional<double> in_query =
+          query_.layout->distances.Between(vote.query, query.id);
+      if (!in_map || !in_query || *in_map + *in_query >= shortest) continue;
+      shortest = *in_map + *in_query;
+      nearest = &vote;
+    }
+    if (nearest == nullptr) return std::nullopt;
+    return PairToCheck{&reference,
+                       &query,
+                       map_.layout->T_map_submap.at(reference.id).Inverse() *
+                           PlaceByVote(maps_, *nearest, query.id),
+                       shortest,
+                       {},
+                       {}};
+  }
+
+  void Check(PairToCheck* const pair) const {
+    pair->agreeing = VerifyPrediction(*pair);
+    if (pair->agreeing ||
+        DriftSigma(consistency_, pair->way) > kMaxContradictionSigma) {
+      return;
+    }
+    // Twice what a single match may have: furniture moves, people walk.
+    pair->contradicting = FindContradiction(
+        match_options_.verification,
+        2. * match_options_.verification.judgement.max_contradiction_ratio,
+        *pair->reference, *pair->query, pair->T_reference_query);
+  }
+
+  // The match at the predicted pose where verification accepts it near there.
+  [[nodiscard]] std::optional<Match> VerifyPrediction(
+      const PairToCheck& pair) const {
+    std::optional<VerifiedPose> verified =
+        VerifyHypotheses(match_options_.verification, pair.reference->surface,
+                         pair.query->surface, {pair.T_reference_query});
+    if (!verified || verified->verdict != Verdict::kAccepted ||
+        !AreNear(verified->T_reference_query, pair.T_reference_query,
+                 query_.layout->centroids.at(pair.query->id),
+                 {options_.same_distance_meters, options_.same_rotation})) {
+      return std::nullopt;
+    }
+    return MakeMatch(match_options_, *pair.reference, *pair.query,
+                     *std::move(verified));
+  }
+
+  const PlacementOptions& options_;
+  const ConsistencyOptions& consistency_;
+  const MatchOptions& match_options_;
+  const PlacedMap& map_;
+  const PlacedMap& query_;
+  const MapPair maps_;
+  std::vector<PairPose> votes_;
+  std::set<std::pair<SubmapId, SubmapId>> done_;
+  size_t num_checked_ = 0;
+};
+
+}  // namespace
+
+bool OverlapsEnough(const SurfaceModel& reference, const SurfaceModel& query,
+                    const Rigid2& T_reference_query) {
+  return OverlapArea(reference, query, T_reference_query) >=
+         kMinOverlap * std::min(ObservedArea(reference), ObservedArea(query));
+}
+
+std::optional<Match> FindContradiction(const VerificationOptions& options,
+                                       const double max_contradiction_ratio,
+                                       const Place& reference,
+                                       const Place& query,
+                                       const Rigid2& T_reference_query) {
+  std::optional<MeasuredPose> measured = RegisterAndMeasure(
+      options, reference.surface, query.surface, T_reference_query);
+  if (!measured) {
+    measured = MeasuredPose{
+        T_reference_query,
+        MeasurePair(options.agreement, options.registration, reference.surface,
+                    query.surface, T_reference_query)};
+  }
+  if (measured->evidence.MeanContradictionRatio() <= max_contradiction_ratio) {
+    return std::nullopt;
+  }
+  Match match;
+  match.pair = {reference.id, query.id, measured->T_reference_query,
+                Score(options.judgement.score_weights, measured->evidence, 0.)};
+  match.pair_score = match.pair.score;
+  match.verdict = Verdict::kContradicted;
+  match.evidence = measured->evidence;
+  return match;
+}
+
+Confirmation ConfirmPlacement(const PlacementOptions& options,
+                              const ConsistencyOptions& consistency,
+                              const MatchOptions& match_options,
+                              const PlacedMap& map, const PlacedMap& query,
+                              std::vector<PairPose> votes,
+                              const size_t max_num_pairs,
+                              const Executor& executor) {
+  Confirmer confirmer(options, consistency, match_options, map, query,
+                      std::move(votes));
+  Confirmation confirmation;
+  while (confirmer.num_checked() < max_num_pairs &&
+         confirmer.Spread(max_num_pairs - confirmer.num_checked(), executor,
+                          &confirmation)) {
+  }
+  return confirmation;
+}
+
+}  // namespace cartographer_sdf

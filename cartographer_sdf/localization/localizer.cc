@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/localization/localizer.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "absl/strings/str_format.h"
+#include "cartographer_sdf/geometry/evenly_spaced.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+bool ByIds(const Match& a, const Match& b) {
+  return IsBeforeByIds(a.pair, b.pair);
+}
+
+std::vector<PairPose> PairsOf(const std::vector<Match>& matches) {
+  std::vector<PairPose> pairs;
+  for (const Match& match : matches) pairs.push_back(match.pair);
+  return pairs;
+}
+
+// Where in the map a placement's strongest vote puts its place.
+std::string DescribeWhere(const MapLayout& map,
+                          const std::vector<Match>& matches,
+                          const Placement& placement) {
+  const size_t strongest =
+      *std::max_element(placement.votes.begin(), placement.votes.end(),
+                        [&matches](const size_t a, const size_t b) {
+                          return matches[a].pair.score < matches[b].pair.score;
+                        });
+  const PairPose& pair = matches[strongest].pair;
+  const Rigid2 T_map_submap =
+      map.T_map_submap.at(pair.reference) * pair.T_reference_query;
+  return absl::StrFormat("(%.1f, %.1f) m in submap %d,%d",
+                         T_map_submap.translation().x(),
+                         T_map_submap.translation().y(),
+                         pair.reference.trajectory, pair.reference.index);
+}
+
+class Localizer {
+ public:
+  Localizer(const LocalizationOptions& options,
+            const ConsistencyOptions& consistency,
+            const MatchOptions& match_options, const PlacedMap& map,
+            const PlacedMap& query, const PlaceMatcher& match_places,
+            const Executor& executor, const StageCallback& on_stage)
+      : options_(options),
+        consistency_(consistency),
+        match_options_(match_options),
+        map_(map),
+        query_(query),
+        match_places_(match_places),
+        executor_(executor),
+        clock_(on_stage, &result_.stage_seconds) {}
+
+  Localization Run() {
+    double area = 0.;
+    for (const auto& [id, place] : *query_.places) {
+      area += ObservedArea(place.surface);
+    }
+    if (query_.places->empty() || area < options_.placement.min_observed_area) {
+      Refuse(LocalizationVerdict::kTooLittleSeen,
+             absl::StrFormat("too little was seen: %.0f m2, %.0f are needed",
+                             area, options_.placement.min_observed_area));
+    } else {
+      Search();
+    }
+    clock_.End();
+    return std::move(result_);
+  }
+
+ private:
+  // All places of the query: evenly spaced ones first, then those between.
+  [[nodiscard]] std::vector<std::map<SubmapId, Place>> Rounds() const {
+    std::vector<const Place*> places;
+    for (const auto& [id, place] : *query_.places) places.push_back(&place);
+    std::vector<std::map<SubmapId, Place>> rounds;
+    std::set<size_t> done;
+    for (size_t count = static_cast<size_t>(options_.num_first_places);
+         done.size() < places.size(); count *= 2) {
+      std::map<SubmapId, Place> round;
+      for (const size_t index : EvenlySpacedIndices(places.size(), count)) {
+        if (done.insert(index).second) {
+          round.emplace(places[index]->id, *places[index]);
+        }
+      }
+      if (!round.empty()) rounds.push_back(std::move(round));
+    }
+    return rounds;
+  }
+
+  // Round by round, until the answer is certain.
+  void Search() {
+    std::vector<Match> accepted;
+    for (const std::map<SubmapId, Place>& places : Rounds()) {
+      for (Match& match : match_places_(places, clock_.Begin("match"))) {
+        // Likely, but for the rival.
+        num_ambiguous_ +=
+            match.verdict == Verdict::kAmbiguous &&
+            match.pair.score >= match_options_.verification.judgement.min_score;
+        if (match.verdict == Verdict::kAccepted) {
+          accepted.push_back(std::move(match));
+        }
+      }
+      std::stable_sort(accepted.begin(), accepted.end(), &ByIds);
+      result_.matches = accepted;
+      result_.contradictions.clear();
+      clock_.Begin("vote");
+      Vote();
+      Decide();
+      if (result_.verdict != LocalizationVerdict::kLocalized) continue;
+      clock_.Begin("confirm");
+      Confirm();
+      Decide();
+      if (result_.verdict == LocalizationVerdict::kLocalized) return;
+    }
+  }
+
+  void Vote() {
+    result_.placements =
+        FindPlacements(options_.placement, consistency_,
+                       {map_.layout, query_.layout}, PairsOf(result_.matches));
+  }
+
+  void Confirm() {
+    std::vector<PairPose> votes;
+    for (const size_t vote : result_.placements.front().votes) {
+      votes.push_back(result_.matches[vote].pair);
+    }
+    Confirmation confirmation = ConfirmPlacement(
+        options_.placement, consistency_, match_options_, map_, query_,
+        std::move(votes), static_cast<size_t>(options_.max_num_confirmed_pairs),
+        executor_);
+    result_.contradictions = std::move(confirmation.contradicting);
+    if (confirmation.agreeing.empty()) return;
+    // What was matched elsewhere and is confirmed here has two matches.
+    for (Match& match : confirmation.agreeing) {
+      result_.matches.push_back(std::move(match));
+    }
+    std::stable_sort(result_.matches.begin(), result_.matches.end(), &ByIds);
+    Vote();
+  }
+
+  // Of the places that the best placement puts into what the map has seen, the
+  // fraction that contradicts it.
+  [[nodiscard]] double ContradictingFraction() const {
+    std::set<SubmapId> agreeing, contradicting;
+    for (const size_t vote : result_.placements.front().votes) {
+      agreeing.insert(result_.matches[vote].pair.query);
+    }
+    for (const Match& match : result_.contradictions) {
+      if (agreeing.count(match.pair.query) == 0) {
+        contradicting.insert(match.pair.query);
+      }
+    }
+    return static_cast<double>(contradicting.size()) /
+           static_cast<double>(agreeing.size() + contradicting.size());
+  }
+
+  void Refuse(const LocalizationVerdict verdict, const std::string& reason) {
+    result_.verdict = verdict;
+    result_.reason = reason;
+  }
+
+  void RefuseWithoutPlacement() {
+    if (num_ambiguous_ > 0) {
+      Refuse(LocalizationVerdict::kAmbiguous,
+             absl::StrFormat("ambiguous: %d pairs of submaps are alike, but "
+                             "in more than one pose each",
+                             num_ambiguous_));
+    } else {
+      Refuse(LocalizationVerdict::kNothingAlike,
+             "nothing alike: no submap of the query was found in the map");
+    }
+  }
+
+  // Counts the votes for and against the best placement; its best rival, null
+  // where it has none.
+  const Placement* CountVotes() {
+    const Placement& best = result_.placements.front();
+    const Placement* rival = nullptr;
+    result_.num_agreeing = static_cast<int>(best.votes.size());
+    result_.num_contradicting = static_cast<int>(result_.contradictions.size());
+    for (const Placement& placement : result_.placements) {
+      if (!placement.is_rival) continue;
+      if (rival == nullptr) rival = &placement;
+      result_.num_contradicting += static_cast<int>(placement.votes.size());
+    }
+    result_.score = best.score;
+    if (rival != nullptr) result_.runner_up_score = rival->score;
+    return rival;
+  }
+
+  void Decide() {
+    const PlacementOptions& options = options_.placement;
+    result_.T_map_query.reset();
+    result_.runner_up_score.reset();
+    if (result_.placements.empty()) return RefuseWithoutPlacement();
+    const Placement& best = result_.placements.front();
+    const Placement* const rival = CountVotes();
+    const std::string where =
+        DescribeWhere(*map_.layout, result_.matches, best);
+    const double fraction = ContradictingFraction();
+    if (best.score < options.min_score) {
+      Refuse(LocalizationVerdict::kUncertain,
+             absl::StrFormat(
+                 "too little agrees: score %.2f at %s, %.2f is needed; more of "
+                 "the place must be seen",
+                 best.score, where, options.min_score));
+    } else if (fraction > options.max_contradicting_fraction) {
+      Refuse(LocalizationVerdict::kContradicted,
+             absl::StrFormat("contradicted: alike at %s, but what should be "
+                             "near there is not, of %.0f %% of the places",
+                             where, 100. * fraction));
+    } else if (rival != nullptr &&
+               best.score - rival->score < options.min_lead) {
+      Refuse(
+          LocalizationVerdict::kAmbiguous,
+          absl::StrFormat("ambiguous between %s (score %.1f) and %s (%.1f)",
+                          where, best.score,
+                          DescribeWhere(*map_.layout, result_.matches, *rival),
+                          rival->score));
+    } else {
+      result_.verdict = LocalizationVerdict::kLocalized;
+      result_.reason =
+          absl::StrFormat("%d matches of submaps agree", best.votes.size());
+      result_.T_map_query = best.T_map_query;
+    }
+  }
+
+  const LocalizationOptions& options_;
+  const ConsistencyOptions& consistency_;
+  const MatchOptions& match_options_;
+  const PlacedMap& map_;
+  const PlacedMap& query_;
+  const PlaceMatcher& match_places_;
+  const Executor& executor_;
+  int num_ambiguous_ = 0;
+  Localization result_;
+  StageClock clock_;
+};
+
+}  // namespace
+
+std::string Validate(const LocalizationOptions& options) {
+  if (const std::string error = Validate(options.placement); !error.empty()) {
+    return error;
+  }
+  if (options.num_first_places < 1) {
+    return "num_first_places must be positive";
+  }
+  if (options.max_num_confirmed_pairs < 0) {
+    return "max_num_confirmed_pairs must not be negative";
+  }
+  return "";
+}
+
+const char* LocalizationVerdictName(const LocalizationVerdict verdict) {
+  switch (verdict) {
+    case LocalizationVerdict::kLocalized:
+      return "localized";
+    case LocalizationVerdict::kTooLittleSeen:
+      return "too_little_seen";
+    case LocalizationVerdict::kNothingAlike:
+      return "nothing_alike";
+    case LocalizationVerdict::kUncertain:
+      return "uncertain";
+    case LocalizationVerdict::kAmbiguous:
+      return "ambiguous";
+    case LocalizationVerdict::kContradicted:
+      return "contradicted";
+    case LocalizationVerdict::kNoMap:
+      return "no_map";
+    case LocalizationVerdict::kFinished:
+      return "finished";
+  }
+  LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
+}
+
+Localization Localize(const LocalizationOptions& options,
+                      const ConsistencyOptions& consistency,
+                      const MatchOptions& match_options, const PlacedMap& map,
+                      const PlacedMap& query, const PlaceMatcher& match_places,
+                      const Executor& executor, const StageCallback& on_stage) {
+  CHECK_EQ(Validate(options), "");
+  CHECK(match_options.method == Method::kSdf)
+      << "the paper's method verifies nothing";
+  return Localizer(options, consistency, match_options, map, query,
+                   match_places, executor, on_stage)
+      .Run();
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Poses of a query submap in a reference submap on which putative
+// correspondences agree. Every pair of correspondences that agrees in length
+// and orientation fixes a pose and votes for it; the fullest bins of a raster
+// of poses come out, each as the mean of its votes. Deterministic, and unlike
+// RANSAC it returns several answers: a place that looks alike twice yields both
+// poses, and verification, which sees walls and free space, decides.
+//
+// Two callers: matching a pair of submaps, which votes with all correspondences
+// of the pair (ProposePoses), and the index of all places, which votes with the
+// few neighbours that fall into one submap, weighted by how distinctive they
+// are (place_index.h).
+
+#ifndef CARTOGRAPHER_SDF_MATCHING_POSE_VOTER_H_
+#define CARTOGRAPHER_SDF_MATCHING_POSE_VOTER_H_
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/matching/correspondence.h"
+
+namespace cartographer_sdf {
+
+struct PoseVotingOptions {
+  // Of the correspondences, the best so many are paired. Time grows with the
+  // square.
+  int max_num_correspondences = 400;
+  // Two correspondences agree when the distances between their keypoints differ
+  // by at most this [m] ...
+  double max_length_difference_meters = 0.2;
+  // ... and the rotations that their orientations imply by at most this [rad].
+  double max_orientation_difference = 0.44;
+  // Keypoints nearer than this to each other fix no rotation [m].
+  double min_baseline_meters = 1.5;
+  // Pitch of the raster of poses, for the position of the centroid of the
+  // query's keypoints [m], and ...
+  double bin_distance_meters = 0.5;
+  // ... for the rotation, approximately [rad].
+  double bin_rotation = 0.10;
+};
+[[nodiscard]] std::string Validate(const PoseVotingOptions& options);
+
+struct WeightedCorrespondence {
+  Eigen::Vector2f p_reference;  // reference frame [m]
+  Eigen::Vector2f p_centroid;   // query's axes, from the keypoints' centroid
+  float rotation;               // that the orientations imply, (-pi, pi]
+  float weight;                 // positive
+};
+
+// What the query's keypoints are measured from while voting.
+[[nodiscard]] Eigen::Vector2d KeypointCentroid(const FeatureSet& features);
+
+struct VotedPose {
+  Rigid2 T_reference_query;
+  // Sum over its votes; a vote is the product of two correspondences' weights.
+  double weight;
+};
+
+// Heaviest first, at most `max_num_poses`. `correspondences` come best first;
+// `centroid` is KeypointCentroid of the query. Fewer than two yield none.
+[[nodiscard]] std::vector<VotedPose> VotePoses(
+    const PoseVotingOptions& options, int max_num_poses,
+    const Eigen::Vector2d& centroid,
+    std::vector<WeightedCorrespondence> correspondences);
+
+struct HypothesisOptions {
+  // Most poses that come out. Larger: more recall, more time.
+  int max_num_hypotheses = 80;
+  PoseVotingOptions votes;
+};
+[[nodiscard]] std::string Validate(const HypothesisOptions& options);
+
+// The poses for which the correspondences of one pair of submaps vote; those of
+// the least descriptor distance take part, with equal weights. Most votes
+// first.
+[[nodiscard]] std::vector<Rigid2> ProposePoses(
+    const HypothesisOptions& options, const FeatureSet& reference,
+    const FeatureSet& query, std::vector<Correspondence> correspondences);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_MATCHING_POSE_VOTER_H_

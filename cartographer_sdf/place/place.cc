@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/place/place.h"
+
+#include <utility>
+
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+
+std::string Validate(const PlaceOptions& options) {
+  for (const std::string& error :
+       {Validate(options.field), Validate(options.keypoint),
+        Validate(options.descriptor)}) {
+    if (!error.empty()) return error;
+  }
+  return "";
+}
+
+std::optional<Place> DescribePlace(const PlaceOptions& options,
+                                   const SubmapId& id,
+                                   const OccupancyGrid& grid) {
+  CHECK_EQ(Validate(options), "");
+  const std::optional<DistanceField> field =
+      MakeDistanceField(options.field, grid);
+  if (!field) return std::nullopt;
+  std::optional<SurfaceModel> surface =
+      MakeSurfaceModel(options.field, grid, *field);
+  if (!surface) return std::nullopt;
+  const Eigen::ArrayXXf smoothed =
+      SmoothField(*field, options.keypoint.smoothing_sigma_cells);
+  FeatureSet features =
+      DescribeKeypoints(options.descriptor, *field, smoothed,
+                        DetectKeypoints(options.keypoint, *field, smoothed));
+  return Place{id, *std::move(surface), std::move(features)};
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_PLACE_PLACE_H_
+#define CARTOGRAPHER_SDF_PLACE_PLACE_H_
+
+#include <optional>
+#include <string>
+
+#include "cartographer_sdf/feature/descriptor.h"
+#include "cartographer_sdf/feature/keypoint.h"
+#include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/place/surface_model.h"
+
+namespace cartographer_sdf {
+
+struct PlaceOptions {
+  FieldOptions field;
+  KeypointOptions keypoint;
+  DescriptorOptions descriptor;
+};
+[[nodiscard]] std::string Validate(const PlaceOptions& options);
+
+// A submap as it is remembered, in its own frame.
+struct Place {
+  SubmapId id;
+  SurfaceModel surface;
+  FeatureSet features;
+};
+
+// None where the grid has no wall, or nothing observed.
+[[nodiscard]] std::optional<Place> DescribePlace(const PlaceOptions& options,
+                                                 const SubmapId& id,
+                                                 const OccupancyGrid& grid);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_PLACE_PLACE_H_

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/place/surface_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+namespace cartographer_sdf {
+namespace {
+
+// Certainty grows linearly with the probability: a wall seen once (0.55) has a
+// weight of 0.28, one at 0.73 or more counts fully; free space seen once (0.49)
+// hardly counts, at 0.25 or less fully.
+constexpr float kWallOffset = 0.48f;
+constexpr float kFreeOffset = 0.5f;
+constexpr float kCertaintyRange = 0.25f;
+
+// About one observed point for each square of this side [m].
+constexpr double kObservedPointSpacing = 0.25;
+
+int16_t ToMillimetres(const float meters) {
+  constexpr float kLimit = 32767.f;
+  return static_cast<int16_t>(
+      std::lround(std::clamp(1000.f * meters, -kLimit, kLimit)));
+}
+
+// Fisher-Yates with a fixed seed and draws of our own, as the standard's
+// shuffle differs between libraries.
+template <typename T>
+void Mix(std::vector<T>* const items) {
+  std::mt19937 generator(42);
+  for (size_t k = items->size(); k > 1; --k) {
+    const uint64_t other = (static_cast<uint64_t>(generator()) * k) >> 32;
+    std::swap((*items)[k - 1], (*items)[other]);
+  }
+}
+
+// The walls as weighted points, and the certainty of the free cells.
+void AddCertainty(const FieldOptions& options, const OccupancyGrid& grid,
+                  SurfaceModel* const model) {
+  const Eigen::Array2i margin = (model->geometry.size - grid.geometry.size) / 2;
+  const float threshold = static_cast<float>(options.occupied_probability);
+  for (int j = 0; j < grid.geometry.size.y(); ++j) {
+    for (int i = 0; i < grid.geometry.size.x(); ++i) {
+      if (!grid.known(i, j)) continue;
+      const float probability = grid.probability(i, j);
+      if (probability > threshold) {
+        const float weight =
+            std::min((probability - kWallOffset) / kCertaintyRange, 1.f);
+        if (weight > 0.f) {
+          model->walls.push_back({grid.geometry.CellCentre({i, j}), weight});
+        }
+      } else {
+        const float certainty =
+            std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
+        model->cells(i + margin.x(), j + margin.y()).free =
+            static_cast<uint8_t>(std::lround(255.f * certainty));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
+                                             const OccupancyGrid& grid) {
+  const std::optional<DistanceField> field = MakeDistanceField(options, grid);
+  if (!field) return std::nullopt;
+  return MakeSurfaceModel(options, grid, *field);
+}
+
+std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
+                                             const OccupancyGrid& grid,
+                                             const DistanceField& field) {
+  SurfaceModel model;
+  model.geometry = field.geometry;
+  const CellGeometry& geometry = model.geometry;
+  model.cells.resize(geometry.size.x(), geometry.size.y());
+  for (Eigen::Index k = 0; k < model.cells.size(); ++k) {
+    model.cells.data()[k] = {ToMillimetres(field.distance.data()[k]), 0,
+                             field.observed.data()[k]};
+  }
+  AddCertainty(options, grid, &model);
+  const int stride =
+      std::max(1, static_cast<int>(std::lround(kObservedPointSpacing /
+                                               geometry.resolution)));
+  for (int j = 0; j < grid.geometry.size.y(); j += stride) {
+    for (int i = 0; i < grid.geometry.size.x(); i += stride) {
+      if (!grid.known(i, j)) continue;
+      model.observed_points.push_back(grid.geometry.CellCentre({i, j}));
+    }
+  }
+  if (model.observed_points.empty() || model.walls.empty()) {
+    return std::nullopt;
+  }
+  model.area_per_observed_point = std::pow(stride * geometry.resolution, 2);
+  Mix(&model.walls);
+  Mix(&model.observed_points);
+  return model;
+}
+
+double ObservedArea(const SurfaceModel& model) {
+  return static_cast<double>(model.observed_points.size()) *
+         model.area_per_observed_point;
+}
+
+Eigen::Vector2d ObservedCentroid(const SurfaceModel& model) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : model.observed_points) sum += point;
+  return sum / static_cast<double>(model.observed_points.size());
+}
+
+}  // namespace cartographer_sdf

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The surface of a submap as verification needs it: its distance field, how
+// certainly each cell is free, and its walls as weighted points.
+
+#ifndef CARTOGRAPHER_SDF_PLACE_SURFACE_MODEL_H_
+#define CARTOGRAPHER_SDF_PLACE_SURFACE_MODEL_H_
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "cartographer_sdf/field/distance_field.h"
+
+namespace cartographer_sdf {
+
+struct SurfacePoint {
+  Eigen::Vector2d position;  // centre of an occupied cell, submap frame [m]
+  double weight;             // how surely it is occupied, in (0, 1]
+};
+
+// One cell of the distance field, in four bytes: verification is bound by
+// memory.
+struct SurfaceCell {
+  int16_t distance;  // signed distance to the nearest wall [mm], saturated
+  // Certainty that the cell is free, 0 (occupied or unknown) to 255.
+  uint8_t free;
+  bool observed;
+};
+
+struct SurfaceModel {
+  CellGeometry geometry;  // of the distance field
+  Eigen::Array<SurfaceCell, Eigen::Dynamic, Eigen::Dynamic> cells;
+  // In a fixed pseudo-random order: the first n are a fair sample of all.
+  std::vector<SurfacePoint> walls;
+  // Centres of a fair sample of the observed cells, submap frame [m], and the
+  // area that each stands for [m^2].
+  std::vector<Eigen::Vector2d> observed_points;
+  double area_per_observed_point = 0.;
+  // Poses other than the identity in which the submap resembles itself: the
+  // half turn of a symmetric room, shifts along a row of equal doors. Filled in
+  // by FindSelfSimilarities (recognition/match.h).
+  std::vector<Rigid2> self_similar_poses;
+};
+
+// `field` is the distance field of `grid`. None where the grid has no wall or
+// nothing is observed.
+[[nodiscard]] std::optional<SurfaceModel> MakeSurfaceModel(
+    const FieldOptions& options, const OccupancyGrid& grid,
+    const DistanceField& field);
+[[nodiscard]] std::optional<SurfaceModel> MakeSurfaceModel(
+    const FieldOptions& options, const OccupancyGrid& grid);
+
+// Area that the submap has observed [m^2], and its centroid in the submap
+// frame: the one "middle" of a submap.
+[[nodiscard]] double ObservedArea(const SurfaceModel& model);
+[[nodiscard]] Eigen::Vector2d ObservedCentroid(const SurfaceModel& model);
+
+// As SampleField, to half a millimetre.
+[[nodiscard]] inline std::optional<FieldSample> SampleSurface(
+    const SurfaceModel& model, const Eigen::Vector2d& p_grid) {
+  const CellGeometry& geometry = model.geometry;
+  return InterpolateField(geometry, p_grid,
+                          [&model](const Eigen::Index i, const Eigen::Index j) {
+                            return 1e-3 * model.cells(i, j).distance;
+                          });
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_PLACE_SURFACE_MODEL_H_

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#ifndef CARTOGRAPHER_SDF_PLACE_TRAJECTORY_PLACES_H_
+#define CARTOGRAPHER_SDF_PLACE_TRAJECTORY_PLACES_H_
+
+#include <cstdlib>
+#include <map>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/place/place.h"
+
+namespace cartographer_sdf {
+
+// Where local SLAM puts a submap, in its trajectory's local frame.
+struct OdometryPose {
+  Rigid2 T_local_submap;
+  double distance_driven = 0.;  // up to the submap, along the trajectory [m]
+};
+
+// The places of one map and their poses by local SLAM; every place has one. No
+// pose of the optimised map takes part. Neither map is owned.
+struct TrajectoryPlaces {
+  const std::map<SubmapId, Place>* places;
+  const std::map<SubmapId, OdometryPose>* odometry;
+};
+
+// Submaps of one trajectory whose indices differ by less share scans, and local
+// SLAM has related them already.
+[[nodiscard]] inline bool ShareScans(const SubmapId& a, const SubmapId& b,
+                                     const int min_index_gap) {
+  return a.trajectory == b.trajectory &&
+         std::abs(a.index - b.index) < min_index_gap;
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_PLACE_TRAJECTORY_PLACES_H_

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Verifies matches together with the neighbourhoods of their submaps
+// (neighbourhood.h), and finds matches that only neighbours propose.
+
+#ifndef CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_VERIFICATION_H_
+#define CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_VERIFICATION_H_
+
+#include <optional>
+#include <vector>
+
+#include "cartographer_sdf/execution/executor.h"
+#include "cartographer_sdf/execution/progress.h"
+#include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
+
+namespace cartographer_sdf {
+
+// `matches` are of method kSdf, in the order of their ids: of pairs within one
+// map, the lower id first (with `min_index_gap`), or between two maps
+// (without). Returns for each pair the pose that its neighbourhood makes most
+// likely, with score and verdict as the neighbourhood has them; among them
+// pairs that had no pose before. In the order of the ids.
+[[nodiscard]] std::vector<Match> VerifyNeighbourhoods(
+    const NeighbourhoodOptions& options, const MatchOptions& match_options,
+    const TrajectoryPlaces& references, const TrajectoryPlaces& queries,
+    std::optional<int> min_index_gap, std::vector<Match> matches,
+    const Executor& executor, const ProgressCallback& on_progress = {});
+
+// The same for one match as it stands: sets its score, verdict and
+// neighbourhood evidence. Its rivals, and what it proposes to other pairs, are
+// not looked at.
+void VerifyNeighbourhood(const NeighbourhoodOptions& options,
+                         const MatchOptions& match_options,
+                         const TrajectoryPlaces& references,
+                         const TrajectoryPlaces& queries,
+                         std::optional<int> min_index_gap, Match* match);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_VERIFICATION_H_

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Results as JSON [RFC 8259], for other programs. Metres and radians; null
+// where there is no value. Not installed: programs that link the library get
+// the results themselves.
+
+#ifndef CARTOGRAPHER_SDF_REPORT_JSON_H_
+#define CARTOGRAPHER_SDF_REPORT_JSON_H_
+
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/submap_id.h"
+#include "nlohmann/json.hpp"
+
+namespace cartographer_sdf {
+
+// Members keep the order in which they are added.
+using Json = nlohmann::ordered_json;
+
+// Indented by two, with a line feed at the end. Takes any value: bytes that are
+// not UTF-8 become U+FFFD, numbers that are not finite become null; all others
+// read back as the same number.
+[[nodiscard]] std::string FormatJson(const Json& json);
+
+// {x, y, yaw}
+[[nodiscard]] Json ToJson(const Rigid2& pose);
+// {trajectory, index}
+[[nodiscard]] Json ToJson(const SubmapId& id);
+
+template <typename T>
+[[nodiscard]] Json ToJson(const std::optional<T>& value) {
+  if (!value.has_value()) return nullptr;
+  if constexpr (std::is_constructible_v<Json, const T&>) {
+    return *value;
+  } else {
+    return ToJson(*value);
+  }
+}
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_REPORT_JSON_H_

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Judges the evidence of a pair at a pose: a score, the log-odds of the pose
+// being right, and a verdict with its reason.
+
+#ifndef CARTOGRAPHER_SDF_VERIFICATION_JUDGEMENT_H_
+#define CARTOGRAPHER_SDF_VERIFICATION_JUDGEMENT_H_
+
+#include <array>
+#include <string>
+
+#include "cartographer_sdf/verification/evidence.h"
+
+namespace cartographer_sdf {
+
+enum class Verdict {
+  kAccepted,
+  kTooLittleOverlap,  // next to nothing was observed by both
+  kContradicted,      // walls of one stand in free space of the other
+  kUnlikely,          // too little agrees
+  kDegenerate,        // walls face one way: the pose could slide along them
+  kAmbiguous,         // another pose is as good
+};
+// "accepted", "too_little_overlap", ...
+[[nodiscard]] const char* VerdictName(Verdict verdict);
+
+// The score is linear in these terms. The weights are learned by logistic
+// regression on pairs of submaps of several buildings; see
+// scripts/learn_score.py.
+struct ScoreWeights {
+  double contradiction_ratio = -99.5;  // mean of both directions
+  double log_overlap = 2.32;           // ln(0.05 + PairEvidence::overlap)
+  double wall_evidence = 0.8;
+  double sqrt_scatter_eigenvalue = 10.;
+  double margin = 1.04;  // to the best distinct pose, capped
+  double bias = -4.67;
+};
+[[nodiscard]] std::string Validate(const ScoreWeights& weights);
+
+struct JudgementOptions {
+  ScoreWeights score_weights;
+  // Least area observed by both [m^2].
+  double min_overlap_area = 10.;
+  // Largest ratio of contradicting wall points, the worse of both directions.
+  double max_contradiction_ratio = 0.10;
+  // Least smaller eigenvalue of the scatter of wall normals, in [0, 0.5].
+  double min_scatter_eigenvalue = 0.03;
+  // Least score; log-odds of being right.
+  double min_score = 3.;
+  // A distinct pose (1 m or 20 degrees away) whose score comes nearer than this
+  // makes the pair ambiguous; log-odds.
+  double min_margin = 0.7;
+};
+[[nodiscard]] std::string Validate(const JudgementOptions& options);
+
+// The largest margin that counts; also the margin where a pose has no rival.
+constexpr double kMaxMargin = 4.;
+
+// The terms of ScoreWeights without the bias, in their order, and their names.
+constexpr int kNumScoreTerms = 5;
+[[nodiscard]] std::array<const char*, kNumScoreTerms> ScoreTermNames();
+[[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
+    const PairEvidence& evidence, double margin);
+[[nodiscard]] double Score(const ScoreWeights& weights,
+                           const PairEvidence& evidence, double margin);
+
+// The reason of the first test that fails, or accepted. `score` may be one that
+// knows more than the pair (neighbourhood.h).
+[[nodiscard]] Verdict Judge(const JudgementOptions& options,
+                            const PairEvidence& evidence, double score,
+                            double margin);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_VERIFICATION_JUDGEMENT_H_

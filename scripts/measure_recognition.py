@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Measures `match` and `close_loops` on every map that has a truth.
+
+Runs the program on all sets that the data directory holds and writes one table:
+recall at precision 1, what is accepted, what of it is wrong, and the errors of
+the closed maps. With --baseline, a second program (of another commit, say) runs
+on the same sets in turn, so that both are measured on the same machine. The
+maps are no part of the project; see CONTRIBUTING.md.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import typing
+
+SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
+
+
+class Set(typing.NamedTuple):
+    name: str
+    map: str
+    truth: str
+    query: str = ""
+    query_truth: str = ""
+    relations: str = ""
+
+
+def within(name, map_name="", relations=""):
+    map_name = map_name or name
+    return Set(name.split("/")[-1], f"{map_name}.pbstream", f"{name}.truth.csv",
+               relations=relations)
+
+
+def between(first, second):
+    short = [name.split("/")[-1] for name in (first, second)]
+    return Set(" x ".join(short), f"{first}.pbstream", f"{first}.truth.csv",
+               f"{second}.pbstream", f"{second}.truth.csv")
+
+
+WITHIN = [
+    within("intel", "intel_open_loop", "intel.relations"),
+    within("aces", "aces_open_loop"),
+    within("mit_killian", "mit_killian_open_loop", "mit_killian.relations"),
+    *map(within, (
+        "willow_1", "willow_2", "fr079", "belgioioso", "fhw_1", "fhw_2",
+        "orebro", "freiburg_campus", "tsc_2016", "tsc_2017", "labc_bare1",
+        "labc_furn", "labc_d3a", "officeb_bare", "officec_R", "officec_L",
+        "field/floor_4", "field/floor_6", "field/twins3_1", "field/twins3_2")),
+]
+BETWEEN = [between(*names) for names in (
+    ("willow_1", "willow_2"), ("fhw_1", "fhw_2"), ("tsc_2016", "tsc_2017"),
+    ("labc_bare1", "labc_furn"), ("labc_bare1", "labc_d3a"),
+    ("officec_R", "officec_L"), ("officec_L", "officec_R"),
+    ("field/floor_4", "field/floor_6"), ("field/twins3_1", "field/twins3_2"))]
+# Of different buildings: whatever is accepted is wrong.
+STRANGERS = [
+    ("intel_open_loop", "aces_open_loop"), ("willow_1", "intel_open_loop"),
+    ("aces_open_loop", "willow_2"), ("mit_killian_open_loop", "willow_1"),
+    ("mit_killian_open_loop", "intel_open_loop"),
+    ("mit_killian_open_loop", "aces_open_loop"), ("fr079", "orebro"),
+    ("belgioioso", "fhw_1"), ("tsc_2016", "labc_bare1"),
+    ("officeb_bare", "labc_furn")]
+
+
+def run(program, *arguments):
+    """(standard output, CPU seconds); ends this program where it fails."""
+    with tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen([program, *map(str, arguments)], text=True,
+                                   stdout=subprocess.PIPE, stderr=errors)
+        output = process.stdout.read()
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            errors.seek(0)
+            sys.exit(f"{program} {' '.join(map(str, arguments))}:\n"
+                     f"{errors.read().decode(errors='replace')}")
+    return output, usage.ru_utime + usage.ru_stime
+
+
+def numbers_of(path):
+    """{(subject, quantity): number} of a CSV file of `evaluate`."""
+    with open(path, encoding="utf-8") as file:
+        return {(row["subject"], row["quantity"]): float(row["value"])
+                for row in csv.DictReader(file)}
+
+
+def accepted_positives(matches, labels):
+    """How many positive pairs are accepted at the right pose."""
+    def rows(path):
+        with open(path, encoding="utf-8") as file:
+            return {tuple(list(row.values())[:4]): row
+                    for row in csv.DictReader(file)}
+    truth = rows(labels)
+    return sum(row["accepted"] == "1" and key in truth and
+               truth[key]["positive"] == "1" and truth[key]["verdict"] == "right"
+               for key, row in rows(matches).items())
+
+
+def measure_match(program, data, entry, flags):
+    with tempfile.TemporaryDirectory() as work:
+        work = pathlib.Path(work)
+        query = ["--query", data / entry.query] if entry.query else []
+        truth = ["--query_truth", data / entry.query_truth] if entry.query else []
+        _, seconds = run(program, "match", "--threads", 1, "--input",
+                         data / entry.map, *query, "--output",
+                         work / "matches.csv", *flags)
+        run(program, "evaluate", "--input", data / entry.map, "--truth",
+            data / entry.truth, *query, *truth, "--matches",
+            work / "matches.csv", "--csv", work / "numbers.csv", "--labels",
+            work / "labels.csv")
+        numbers = numbers_of(work / "numbers.csv")
+        accepted = accepted_positives(work / "matches.csv", work / "labels.csv")
+    positives = numbers["matches", "positives"]
+    return {"pairs": numbers["matches", "pairs"], "positives": positives,
+            "recall_p1": numbers["matches", "recall_p1"],
+            "accepted_recall": accepted / positives if positives else 0.,
+            "accepted_wrong": numbers["accepted", "wrong"],
+            "answers": numbers["matches", "answers"],
+            "wrong": numbers["matches", "wrong"], "cpu_seconds": seconds}
+
+
+def measure_strangers(program, data, names, flags):
+    with tempfile.TemporaryDirectory() as work:
+        path = pathlib.Path(work) / "matches.csv"
+        _, seconds = run(program, "match", "--threads", 1, "--input",
+                         data / f"{names[0]}.pbstream", "--query",
+                         data / f"{names[1]}.pbstream", "--output", path, *flags)
+        with open(path, encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+    return {"answers": len(rows),
+            "accepted": sum(row["accepted"] in ("1", "true") for row in rows),
+            "highest_score": max((float(row["score"]) for row in rows),
+                                 default=float("nan")),
+            "cpu_seconds": seconds}
+
+
+def measure_close_loops(program, data, entry):
+    with tempfile.TemporaryDirectory() as work:
+        work = pathlib.Path(work)
+        _, seconds = run(program, "close_loops", "--threads", 1, "--input",
+                         data / entry.map, "--output", work / "closed.pbstream",
+                         "--closures", work / "closures.csv")
+        relations = (["--relations", data / entry.relations]
+                     if entry.relations else [])
+        result = {"cpu_seconds": seconds}
+        for name, path in (("before", data / entry.map),
+                           ("after", work / "closed.pbstream")):
+            run(program, "evaluate", "--input", path, "--truth",
+                data / entry.truth, *relations, "--csv", work / "numbers.csv")
+            numbers = numbers_of(work / "numbers.csv")
+            result[f"nodes_{name}"] = numbers.get(("nodes", "mean_m"))
+            if relations:
+                result[f"loops_{name}"] = numbers[("loop relations", "mean_m")]
+        run(program, "evaluate", "--input", data / entry.map, "--truth",
+            data / entry.truth, "--matches", work / "closures.csv", "--csv",
+            work / "numbers.csv")
+        numbers = numbers_of(work / "numbers.csv")
+        result["closures"] = sum(1 for _ in open(work / "closures.csv",
+                                                 encoding="utf-8")) - 1
+        result["wrong"] = numbers["accepted", "wrong"]
+    return result
+
+
+def parse_arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--program", type=pathlib.Path,
+                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+    parser.add_argument("--baseline", type=pathlib.Path,
+                        help="another program to run on the same sets")
+    parser.add_argument("--data", type=pathlib.Path,
+                        default=SOURCE_DIR.parent / "shared" / "data")
+    parser.add_argument("--jobs", type=int, default=1,
+                        help="sets that are measured at once")
+    parser.add_argument("--only", default="",
+                        help="names of sets, separated by commas")
+    parser.add_argument("--skip", default="",
+                        help="of match, close_loops and strangers, by commas")
+    parser.add_argument("--flags", default="", help="further flags of match")
+    parser.add_argument("--output", type=pathlib.Path, required=True,
+                        help="the JSON file for all numbers")
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments()
+    if not arguments.data.is_dir():
+        sys.exit(f"measure_recognition.py: no maps at {arguments.data}")
+    only = [name for name in arguments.only.split(",") if name]
+    skip = arguments.skip.split(",")
+    programs = {"program": arguments.program}
+    if arguments.baseline:
+        programs["baseline"] = arguments.baseline
+    flags = arguments.flags.split()
+    tasks = []
+    for entry in WITHIN + BETWEEN:
+        if only and entry.name not in only:
+            continue
+        if not (arguments.data / entry.map).exists():
+            continue
+        for label, program in programs.items():
+            if "match" not in skip:
+                tasks.append((("match", entry.name, label), measure_match,
+                              (program, arguments.data, entry, flags)))
+            if "close_loops" not in skip and not entry.query:
+                tasks.append((("close_loops", entry.name, label),
+                              measure_close_loops,
+                              (program, arguments.data, entry)))
+    if "strangers" not in skip and not only:
+        for names in STRANGERS:
+            for label, program in programs.items():
+                tasks.append((("strangers", " x ".join(names), label),
+                              measure_strangers,
+                              (program, arguments.data, names, flags)))
+    results = {}
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        futures = [(key, pool.submit(function, *values))
+                   for key, function, values in tasks]
+        for key, future in futures:
+            results.setdefault(key[0], {}).setdefault(key[1], {})[key[2]] = (
+                future.result())
+            print(*key, {name: round(value, 4) if value is not None else None
+                         for name, value in future.result().items()},
+                  flush=True)
+            arguments.output.write_text(json.dumps(results, indent=1) + "\n",
+                                        encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

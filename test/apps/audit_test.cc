@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/apps/audit.h"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/evaluation/false_constraints.h"
+#include "cartographer_sdf/execution/parallel_for.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/shared_data.h"
+#include "test/testing/slipped_map.h"
+#include "test/testing/temporary_directory.h"
+
+namespace cartographer_sdf::audit_test {
+namespace {
+
+Executor Threads(const int num_threads) { return MakeExecutor(num_threads); }
+
+// As documentation shows it: lists the doubtful constraints of a map and writes
+// it without them. Returns their number.
+absl::StatusOr<size_t> RemoveDoubtful(const std::string& input,
+                                      const std::string& output) {
+  // One after the other; a program of many threads would share them out.
+  const Executor executor = [](const size_t n,
+                               const std::function<void(size_t)>& task) {
+    for (size_t k = 0; k < n; ++k) task(k);
+  };
+  const absl::StatusOr<Audit> audit =
+      AuditMap(LoopClosingOptions(), AuditOptions(), input, {}, executor);
+  if (!audit.ok()) return audit.status();
+  for (const AuditedConstraint& audited : audit->constraints) {
+    if (!IsDoubtful(audited.verdict)) continue;
+    const Constraint& constraint =
+        audit->state.pose_graph.constraints[audited.constraint];
+    VLOG(1) << "submap " << constraint.submap << ", node " << constraint.node
+            << ": " << AuditVerdictName(audited.verdict);
+  }
+  const absl::Status status = WriteMap(input, output, audit->pose_graph);
+  if (!status.ok()) return status;
+  return audit->num_doubtful;
+}
+
+// An office with its loops closed, the same with wrong constraints, and the
+// audit of that: once for all tests.
+class AuditTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    directory_ = new testing::TemporaryDirectory();
+    testing::WriteOffice(testing::Slip::kNone, File("open.pbstream"));
+    const absl::StatusOr<LoopClosingResult> closed =
+        CloseLoops(LoopClosingOptions(), File("open.pbstream"), {}, Threads(2));
+    ASSERT_TRUE(closed.ok()) << closed.status();
+    ASSERT_TRUE(WriteMap(File("open.pbstream"), File("good.pbstream"),
+                         closed->closed.pose_graph)
+                    .ok());
+    FalsificationOptions options;
+    options.num_pairs = 2;
+    const absl::StatusOr<FalsifiedMap> falsified = FalsifyMap(
+        LoopClosingOptions(), options, File("good.pbstream"), {}, Threads(2));
+    ASSERT_TRUE(falsified.ok()) << falsified.status();
+    false_constraints_ =
+        new std::vector<FalseConstraint>(falsified->false_constraints);
+    ASSERT_TRUE(WriteMap(File("good.pbstream"), File("bad.pbstream"),
+                         falsified->pose_graph)
+                    .ok());
+    absl::StatusOr<Audit> audit =
+        AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
+                 Threads(2));
+    ASSERT_TRUE(audit.ok()) << audit.status();
+    audit_ = new Audit(*std::move(audit));
+  }
+  static void TearDownTestSuite() {
+    delete audit_;
+    delete false_constraints_;
+    delete directory_;
+  }
+  static std::string File(const std::string& name) {
+    return directory_->File(name);
+  }
+
+  static testing::TemporaryDirectory* directory_;
+  static std::vector<FalseConstraint>* false_constraints_;
+  static Audit* audit_;
+};
+
+testing::TemporaryDirectory* AuditTest::directory_ = nullptr;
+std::vector<FalseConstraint>* AuditTest::false_constraints_ = nullptr;
+Audit* AuditTest::audit_ = nullptr;
+
+TEST_F(AuditTest, LeavesAGoodMapAsItIs) {
+  const absl::StatusOr<size_t> num_doubtful =
+      RemoveDoubtful(File("good.pbstream"), File("same.pbstream"));
+  ASSERT_TRUE(num_doubtful.ok()) << num_doubtful.status();
+  EXPECT_EQ(*num_doubtful, 0u);
+  EXPECT_EQ(directory_->Read("same.pbstream"),
+            directory_->Read("good.pbstream"));
+}
+
+TEST_F(AuditTest, FindsWrongConstraints) {
+  std::set<FalseKind> kinds;
+  std::set<size_t> wrong;
+  for (const FalseConstraint& label : *false_constraints_) {
+    kinds.insert(label.kind);
+    wrong.insert(label.constraint);
+  }
+  // An office this small has no different places that look alike.
+  EXPECT_GE(kinds.size(), 4u);
+  size_t num_right_doubted = 0;
+  for (const AuditedConstraint& audited : audit_->constraints) {
+    if (wrong.count(audited.constraint) > 0) {
+      EXPECT_TRUE(IsDoubtful(audited.verdict))
+          << audited.constraint << ": " << AuditVerdictName(audited.verdict);
+    } else if (IsDoubtful(audited.verdict)) {
+      ++num_right_doubted;
+    }
+  }
+  EXPECT_LE(num_right_doubted, audit_->constraints.size() / 50);
+  EXPECT_EQ(audit_->num_doubtful, wrong.size() + num_right_doubted);
+  EXPECT_EQ(audit_->pose_graph.constraints.size() + audit_->num_doubtful,
+            audit_->state.pose_graph.constraints.size());
+}
+
+TEST_F(AuditTest, MakesTheMapOfTheOthers) {
+  const absl::StatusOr<MapState> good = ReadMap(File("good.pbstream"));
+  ASSERT_TRUE(good.ok()) << good.status();
+  double largest = 0.;
+  for (const auto& [id, node] : audit_->pose_graph.nodes) {
+    const Rigid2& T_map_node = good->pose_graph.nodes.at(id).T_map_node;
+    largest = std::max(
+        largest,
+        (node.T_map_node.translation() - T_map_node.translation()).norm());
+  }
+  // Right constraints that were dropped may matter by centimetres.
+  EXPECT_LT(largest, 0.05);
+}
+
+TEST_F(AuditTest, IsTheSameForAnyNumberOfThreads) {
+  const absl::StatusOr<Audit> alone =
+      AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
+               Threads(1));
+  ASSERT_TRUE(alone.ok()) << alone.status();
+  ASSERT_TRUE(
+      WriteMap(File("bad.pbstream"), File("one.pbstream"), alone->pose_graph)
+          .ok());
+  ASSERT_TRUE(
+      WriteMap(File("bad.pbstream"), File("two.pbstream"), audit_->pose_graph)
+          .ok());
+  EXPECT_EQ(directory_->Read("one.pbstream"), directory_->Read("two.pbstream"));
+  EXPECT_NE(directory_->Read("one.pbstream"), directory_->Read("bad.pbstream"));
+}
+
+TEST_F(AuditTest, ThresholdsAct) {
+  AuditOptions options;
+  options.max_contradiction_ratio = 0.;
+  options.max_agreeing_translation_meters = 0.;
+  const absl::StatusOr<Audit> strict = AuditMap(
+      LoopClosingOptions(), options, File("bad.pbstream"), {}, Threads(2));
+  ASSERT_TRUE(strict.ok()) << strict.status();
+  EXPECT_GT(strict->num_doubtful, audit_->num_doubtful + 20);
+}
+
+TEST_F(AuditTest, SaysWhatIsWrongWithTheFile) {
+  directory_->Write("broken.pbstream", "not a map");
+  const absl::StatusOr<Audit> audit =
+      AuditMap(LoopClosingOptions(), AuditOptions(), File("broken.pbstream"),
+               {}, Threads(1));
+  ASSERT_FALSE(audit.ok());
+  EXPECT_THAT(std::string(audit.status().message()),
+              ::testing::HasSubstr("broken.pbstream"));
+}
+
+// Users' maps have no truth; this one has no constraint that looks wrong.
+TEST(RealMapAuditTest, LeavesTheArenaAsItIs) {
+  SKIP_WITHOUT_SHARED_DATA("user_map_arena.pbstream");
+  const absl::StatusOr<Audit> audit =
+      AuditMap(LoopClosingOptions(), AuditOptions(),
+               SharedDataPath("user_map_arena.pbstream"), {}, Threads(2));
+  ASSERT_TRUE(audit.ok()) << audit.status();
+  EXPECT_EQ(audit->constraints.size(), 10838u);
+  EXPECT_EQ(audit->num_doubtful, 0u);
+}
+
+}  // namespace
+}  // namespace cartographer_sdf::audit_test
