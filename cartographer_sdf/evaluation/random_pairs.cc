@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <random>
 #include <utility>
@@ -169,8 +168,7 @@ std::vector<std::vector<MatchRow>> MatchTurnedPairs(
       DescribeReferences(make_place, pairs, executor);
   // By pairs, of which those without both places have no rows.
   std::vector<std::vector<std::optional<MatchRow>>> found(pairs.size());
-  std::mutex progress_mutex;
-  size_t num_done = 0;
+  TaskProgress progress(on_progress, pairs.size());
   executor(pairs.size(), [&](const size_t k) {
     const std::optional<Place>& reference = references.at(pairs[k].reference);
     std::optional<Place> query = make_place(pairs[k].query, pairs[k].rotation);
@@ -178,10 +176,7 @@ std::vector<std::vector<MatchRow>> MatchTurnedPairs(
       found[k] = MatchVariants(options, pairs[k], max_clearances, *reference,
                                *std::move(query));
     }
-    if (!on_progress) return;
-    const std::lock_guard<std::mutex> lock(progress_mutex);
-    on_progress(static_cast<double>(++num_done) /
-                static_cast<double>(pairs.size()));
+    progress.TaskIsDone();
   });
   std::vector<std::vector<MatchRow>> rows(1 + max_clearances.size());
   for (std::vector<std::optional<MatchRow>>& variants : found) {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <utility>
 
 namespace cartographer_sdf {
 
@@ -17,11 +18,10 @@ using ProgressCallback = std::function<void(double)>;
 // tells the callback: increasing fractions, one call at a time.
 class TaskProgress {
  public:
-  // The stage takes the job from the fraction `begin` to `end`. The callback
-  // outlives this.
-  TaskProgress(const ProgressCallback& on_progress, const size_t num_tasks,
+  // The stage takes the job from the fraction `begin` to `end`.
+  TaskProgress(ProgressCallback on_progress, const size_t num_tasks,
                const double begin = 0., const double end = 1.)
-      : on_progress_(on_progress),
+      : on_progress_(std::move(on_progress)),
         num_tasks_(num_tasks),
         begin_(begin),
         end_(end) {}
@@ -36,7 +36,7 @@ class TaskProgress {
   }
 
  private:
-  const ProgressCallback& on_progress_;
+  const ProgressCallback on_progress_;
   const size_t num_tasks_;
   const double begin_;
   const double end_;

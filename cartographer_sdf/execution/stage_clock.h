@@ -22,7 +22,7 @@ using StageCallback = std::function<ProgressCallback(const std::string& stage)>;
 // Announces the stages of a job, one after the other, and takes their times.
 class StageClock {
  public:
-  // Both outlive the clock.
+  // `seconds` outlives the clock.
   StageClock(StageCallback on_stage,
              std::vector<std::pair<std::string, double>>* const seconds)
       : on_stage_(std::move(on_stage)), seconds_(seconds) {}

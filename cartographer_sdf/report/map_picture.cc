@@ -21,6 +21,8 @@ std::vector<PlacedGrid> Grids(const MapState& state,
   return grids;
 }
 
+}  // namespace
+
 void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
                Picture* const picture) {
   std::map<int, std::vector<Eigen::Vector2d>> paths;
@@ -31,8 +33,6 @@ void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
     DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
   }
 }
-
-}  // namespace
 
 std::map<SubmapId, Eigen::Vector2d> SubmapCentres(const PoseGraph& pose_graph) {
   std::map<SubmapId, std::pair<Eigen::Vector2d, int>> sums;

@@ -31,6 +31,10 @@ struct SubmapLink {
 // as ReadMap() and PrepareMap() do.
 using SubmapsReader = std::function<absl::Status(const SubmapCallback&)>;
 
+// The path of each trajectory, in the colour of its number.
+void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
+               Picture* picture);
+
 // Where the robot was in the middle of each submap, in the submap's frame: the
 // mean of its nodes; the origin where it has none.
 [[nodiscard]] std::map<SubmapId, Eigen::Vector2d> SubmapCentres(

@@ -16,6 +16,7 @@
 #include "cartographer_sdf/report/html_report.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_painter.h"
+#include "cartographer_sdf/report/map_picture.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -163,17 +164,6 @@ std::string NodesCsv(const LogRunResult& result) {
         node.is_connected ? 1 : 0, node.cpu_seconds);
   }
   return csv;
-}
-
-void DrawPaths(const PoseGraph& pose_graph, const PixelFrame& frame,
-               Picture* const picture) {
-  std::map<int, std::vector<Eigen::Vector2d>> paths;
-  for (const auto& [id, node] : pose_graph.nodes) {
-    paths[id.trajectory].push_back(node.T_map_node.translation());
-  }
-  for (const auto& [trajectory, path] : paths) {
-    DrawTrajectory(path, frame, CategoryColor(trajectory), picture);
-  }
 }
 
 // Those that were injected, between the origins of their submaps.
