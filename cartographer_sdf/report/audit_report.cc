@@ -1,23 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/report/audit_report.h"
-
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/report/html_report.h"
-#include "cartographer_sdf/report/map_picture.h"
-#include "cartographer_sdf/report/submap_pictures.h"
+#include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/report/reports.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -25,8 +19,6 @@ namespace {
 constexpr Color kKeptColor{0.2, 0.45, 0.7, 0.35};
 constexpr Color kDoubtfulColor{0.84, 0.15, 0.16, 0.85};
 constexpr size_t kMaxNamedConstraints = 6;
-
-double ToDegrees(const double radians) { return radians * 180. / M_PI; }
 
 // A group and what became of its constraints.
 struct GroupOutcome {
@@ -61,25 +53,6 @@ std::vector<GroupOutcome> Outcomes(const Audit& audit) {
   return outcomes;
 }
 
-// Doubtful groups by falling contradiction; then those that only the map saved.
-std::vector<GroupOutcome> OfInterest(std::vector<GroupOutcome> outcomes) {
-  outcomes.erase(std::remove_if(outcomes.begin(), outcomes.end(),
-                                [](const GroupOutcome& outcome) {
-                                  return outcome.num_doubtful == 0 &&
-                                         outcome.verdict !=
-                                             AuditVerdict::kAgreesWithMap;
-                                }),
-                 outcomes.end());
-  std::stable_sort(outcomes.begin(), outcomes.end(),
-                   [](const GroupOutcome& a, const GroupOutcome& b) {
-                     if ((a.num_doubtful > 0) != (b.num_doubtful > 0)) {
-                       return a.num_doubtful > 0;
-                     }
-                     return a.group->claim.score < b.group->claim.score;
-                   });
-  return outcomes;
-}
-
 std::string VerdictText(const GroupOutcome& outcome) {
   switch (outcome.verdict) {
     case AuditVerdict::kConfirmed:
@@ -110,8 +83,7 @@ std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
   const AuditedGroup& group = *outcome.group;
   std::vector<std::string> names;
   double before = 0.;
-  double after = 0.;
-  double turn_after = 0.;
+  ConstraintError after;
   for (const AuditedConstraint* const audited : outcome.constraints) {
     const Constraint& constraint =
         audit.state.pose_graph.constraints[audited->constraint];
@@ -122,8 +94,9 @@ std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
                           constraint.node.index));
     }
     before = std::max(before, audited->error_before.translation);
-    after = std::max(after, audited->error_after.translation);
-    turn_after = std::max(turn_after, audited->error_after.rotation);
+    after.translation =
+        std::max(after.translation, audited->error_after.translation);
+    after.rotation = std::max(after.rotation, audited->error_after.rotation);
   }
   const std::string more =
       outcome.constraints.size() > names.size()
@@ -136,22 +109,9 @@ std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
       "without doubtful ones; %d of %d constraints (submap)-(node) doubtful: "
       "%s%s",
       VerdictText(outcome), group.claim.margin, group.cycles.support,
-      group.cycles.contradiction, before, after, ToDegrees(turn_after),
-      outcome.num_doubtful, outcome.constraints.size(),
-      absl::StrJoin(names, " "), more);
-}
-
-std::vector<SubmapLink> LinksOf(const std::vector<GroupOutcome>& outcomes) {
-  std::vector<SubmapLink> links;
-  for (const bool doubtful : {false, true}) {
-    for (const GroupOutcome& outcome : outcomes) {
-      if ((outcome.num_doubtful > 0) != doubtful) continue;
-      links.push_back({outcome.group->group.reference,
-                       outcome.group->group.query,
-                       doubtful ? kDoubtfulColor : kKeptColor});
-    }
-  }
-  return links;
+      group.cycles.contradiction, before, after.translation,
+      after.rotation * 180. / M_PI, outcome.num_doubtful,
+      outcome.constraints.size(), absl::StrJoin(names, " "), more);
 }
 
 std::vector<std::pair<std::string, std::string>> MakeSummary(
@@ -172,19 +132,6 @@ std::vector<std::pair<std::string, std::string>> MakeSummary(
                      AuditVerdictName(verdict)),
         absl::StrCat(count));
   }
-  summary.emplace_back(
-      "Odometry weights",
-      absl::StrFormat("%.3g (translation), %.3g (rotation)",
-                      audit.optimization.odometry_translation_weight,
-                      audit.optimization.odometry_rotation_weight));
-  if (!audit.optimizations.empty()) {
-    const OptimizationSummary& last = audit.optimizations.back();
-    summary.emplace_back(
-        "Optimisation",
-        absl::StrFormat("cost %.4g to %.4g in %d iterations, %d rounds",
-                        last.initial_cost, last.final_cost, last.num_iterations,
-                        audit.optimizations.size()));
-  }
   return summary;
 }
 
@@ -199,18 +146,13 @@ std::vector<HistogramPlot> MakeHistograms(
     (doubtful ? doubtful_contradictions : kept_contradictions)
         .push_back(100. * outcome.group->claim.evidence.ContradictionRatio());
   }
-  HistogramPlot scores;
-  scores.title = "Scores of the groups";
-  scores.x.label = "score (log-odds of being right)";
-  scores.x.range = {{-20., 20.}};
-  scores.series = {{"kept", kept_scores}, {"doubtful", doubtful_scores}};
-  HistogramPlot contradictions;
-  contradictions.title = "Walls in the other's free space";
-  contradictions.x.label = "% of the wall points, the worse direction";
-  contradictions.x.range = {{0., 30.}};
-  contradictions.series = {{"kept", kept_contradictions},
-                           {"doubtful", doubtful_contradictions}};
-  return {scores, contradictions};
+  return {
+      {"Scores of the groups",
+       {"score (log-odds of being right)", {{-20., 20.}}},
+       {{"kept", kept_scores}, {"doubtful", doubtful_scores}}},
+      {"Walls in the other's free space",
+       {"% of the wall points, the worse direction", {{0., 30.}}},
+       {{"kept", kept_contradictions}, {"doubtful", doubtful_contradictions}}}};
 }
 
 ReportedClosure ReportedGroup(const Audit& audit, const GroupOutcome& outcome) {
@@ -223,70 +165,57 @@ ReportedClosure ReportedGroup(const Audit& audit, const GroupOutcome& outcome) {
   reported.status = absl::StrCat(reported.accepted ? "kept: " : "doubtful: ",
                                  AuditVerdictName(outcome.verdict));
   reported.reason = ReasonOf(audit, outcome);
+  if (!reported.accepted) reported.link = kDoubtfulColor;
   return reported;
 }
 
-// All but the maps and the groups.
-ReportContent MakeText(const ReportRequest& request, const std::string& input,
-                       const Audit& audit,
+// All but the pictures: the groups that are doubtful, or that only the map
+// saved.
+ReportContent MakeText(const std::string& input, const Audit& audit,
                        const std::vector<GroupOutcome>& outcomes) {
   ReportContent content;
-  content.title =
-      "Audit of " + std::filesystem::path(input).filename().string();
+  content.title = "Audit of " + FileName(input);
   content.subtitle =
       "Every inter-submap constraint held against what its submaps look like, "
       "the others, and the map that the undoubted ones make.";
   content.summary = MakeSummary(audit);
-  if (!audit.optimizations.empty() && !audit.optimizations.back().converged) {
-    content.warnings.push_back(
-        absl::StrCat("The optimisation did not converge: ",
-                     audit.optimizations.back().message));
-  }
+  AddOptimization(audit.optimization, audit.optimizations, &content);
   content.closures_heading = "Doubtful constraints";
+  for (const GroupOutcome& outcome : outcomes) {
+    if (outcome.num_doubtful > 0 ||
+        outcome.verdict == AuditVerdict::kAgreesWithMap) {
+      content.closures.push_back(ReportedGroup(audit, outcome));
+    }
+  }
+  SortByInterest(&content.closures);
   content.histograms = MakeHistograms(outcomes);
   content.stages = audit.stage_seconds;
-  content.options = request.options_text;
   return content;
 }
 
-// Reads the map for all pictures: those of the whole, and of the groups that
-// are shown.
-absl::Status DrawPictures(const SubmapsReader& read_submaps,
-                          const ReportOptions& options, const Audit& audit,
-                          const std::vector<GroupOutcome>& outcomes,
-                          const std::vector<GroupOutcome>& shown,
-                          ReportContent* const content) {
-  std::set<SubmapId> wanted;
-  for (const GroupOutcome& outcome : shown) {
-    wanted.insert(outcome.group->group.reference);
-    wanted.insert(outcome.group->group.query);
-  }
-  MapPicture before(audit.state, audit.state.pose_graph,
-                    options.map_picture_pixels);
-  MapPicture after(audit.state, audit.pose_graph, options.map_picture_pixels);
-  std::map<SubmapId, OccupancyGrid> grids;
-  const absl::Status status = read_submaps(
-      [&](const SubmapId& id, const SubmapSummary&, const OccupancyGrid& grid) {
-        before.AddSubmap(id, grid);
-        after.AddSubmap(id, grid);
-        if (wanted.count(id) > 0) grids.emplace(id, grid);
-      });
-  if (!status.ok()) return status;
-  content->maps.push_back(
-      before.Finish("As it was; red: doubtful constraints, blue: the others",
-                    LinksOf(outcomes)));
-  if (audit.num_doubtful > 0) {
-    content->maps.push_back(after.Finish("Without the doubtful ones", {}));
-  }
-  for (size_t k = 0; k < shown.size(); ++k) {
-    const ConstraintGroup& group = shown[k].group->group;
-    content->closures[k].png =
-        DrawMatchedPair(grids.at(group.reference), grids.at(group.query),
-                        group.T_reference_query, {},
-                        options.closure_picture_pixels)
-            .EncodePng();
-  }
-  return absl::OkStatus();
+constexpr char kHeader[] =
+    "constraint,submap_trajectory,submap_index,node_trajectory,node_index,x,y,"
+    "yaw,doubtful,verdict,error_before,rotation_error_before,error_after,"
+    "rotation_error_after,group,reference_trajectory,reference_index,"
+    "query_trajectory,query_index,group_x,group_y,group_yaw,score,margin,"
+    "overlap_area,overlap,hit_ratio,"
+    "contradiction_ratio,shift,support,contradiction\n";
+
+std::string GroupFields(const AuditedGroup& audited, const size_t number) {
+  const ConstraintGroup& group = audited.group;
+  const ClaimEvidence& claim = audited.claim;
+  return absl::StrFormat(
+      "%d,%d,%d,%d,%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%s,%.6f,%."
+      "6f",
+      number, group.reference.trajectory, group.reference.index,
+      group.query.trajectory, group.query.index,
+      group.T_reference_query.translation().x(),
+      group.T_reference_query.translation().y(),
+      group.T_reference_query.rotation(), claim.score, claim.margin,
+      claim.evidence.overlap_area, claim.evidence.overlap,
+      claim.evidence.HitRatio(), claim.evidence.ContradictionRatio(),
+      claim.shift ? absl::StrFormat("%.6f", *claim.shift) : "",
+      audited.cycles.support, audited.cycles.contradiction);
 }
 
 }  // namespace
@@ -295,17 +224,53 @@ absl::Status WriteAuditReport(const ReportRequest& request,
                               const std::string& input, const Audit& audit,
                               const SubmapsReader& read_submaps) {
   const std::vector<GroupOutcome> outcomes = Outcomes(audit);
-  std::vector<GroupOutcome> order = OfInterest(outcomes);
-  ReportContent content = MakeText(request, input, audit, outcomes);
-  for (const GroupOutcome& outcome : order) {
-    content.closures.push_back(ReportedGroup(audit, outcome));
+  ReportContent content = MakeText(input, audit, outcomes);
+  content.options = request.options_text;
+  std::vector<MapPicture> maps = {
+      {"As it was; red: doubtful constraints, blue: the others", &audit.state,
+       &audit.state.pose_graph, /*shows_links=*/true}};
+  for (const GroupOutcome& outcome : outcomes) {
+    if (outcome.num_doubtful > 0) continue;
+    maps.front().other_links.push_back({outcome.group->group.reference,
+                                        outcome.group->group.query,
+                                        kKeptColor});
   }
-  order.resize(std::min(
-      order.size(), static_cast<size_t>(request.options.max_closure_pictures)));
-  const absl::Status status = DrawPictures(read_submaps, request.options, audit,
-                                           outcomes, order, &content);
+  if (audit.num_doubtful > 0) {
+    maps.push_back(
+        {"Without the doubtful ones", &audit.state, &audit.pose_graph});
+  }
+  const absl::Status status =
+      DrawPictures(maps, read_submaps, request.options, &content);
   if (!status.ok()) return status;
-  return WriteReport(request.directory, content, request.options);
+  return WriteReport(request.directory, content);
+}
+
+absl::Status WriteAuditTable(const std::string& path, const Audit& audit) {
+  std::map<size_t, size_t> group_of;
+  for (size_t g = 0; g < audit.groups.size(); ++g) {
+    for (const size_t k : audit.groups[g].group.constraints) group_of[k] = g;
+  }
+  std::string content = kHeader;
+  for (const AuditedConstraint& audited : audit.constraints) {
+    const Constraint& constraint =
+        audit.state.pose_graph.constraints[audited.constraint];
+    const Rigid2& T_submap_node = constraint.T_submap_node;
+    const auto group = group_of.find(audited.constraint);
+    absl::StrAppendFormat(
+        &content,
+        "%d,%d,%d,%d,%d,%.6f,%.6f,%.6f,%d,%s,%.6f,%.6f,%.6f,%.6f,%s\n",
+        audited.constraint, constraint.submap.trajectory,
+        constraint.submap.index, constraint.node.trajectory,
+        constraint.node.index, T_submap_node.translation().x(),
+        T_submap_node.translation().y(), T_submap_node.rotation(),
+        IsDoubtful(audited.verdict) ? 1 : 0, AuditVerdictName(audited.verdict),
+        audited.error_before.translation, audited.error_before.rotation,
+        audited.error_after.translation, audited.error_after.rotation,
+        group == group_of.end()
+            ? std::string(16, ',')
+            : GroupFields(audit.groups[group->second], group->second));
+  }
+  return WriteWholeFile(path, content);
 }
 
 }  // namespace cartographer_sdf

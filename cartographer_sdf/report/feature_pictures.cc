@@ -5,42 +5,49 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <optional>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/report/svg_plot.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
+constexpr Color kUnknownCell{0.78, 0.78, 0.78};
+constexpr Color kHatch{0.66, 0.66, 0.66};
 constexpr Color kShade{0.45, 0.5, 0.58};
 constexpr Color kUnknownFace{0.8, 0.8, 0.8};
+constexpr Color kFar{0.1, 0.35, 0.7};
+constexpr Color kInside{0.55, 0.3, 0.1};
+constexpr Color kDark{0.1, 0.1, 0.1};
+constexpr Color kReference{0.05, 0.25, 0.75};
+constexpr Color kQuery{0.8, 0.08, 0.08};
+constexpr double kContourIntervalMeters = 0.5;
 // The view of the surface: turned, and tilted towards the viewer.
 constexpr double kAzimuth = 30. * M_PI / 180.;
 constexpr double kElevation = 38. * M_PI / 180.;
 // Heights are drawn this much larger than lengths, so that rooms stand out.
 constexpr double kHeightScale = 1.6;
 // The distance at which the colours saturate [m].
+constexpr double kFullColorMeters = 3.;
 constexpr double kSurfaceColorMeters = 2.;
 
-Color MarkColor(const KeypointMark mark) {
-  switch (mark) {
-    case KeypointMark::kMaximum:
-      return {0.9, 0.1, 0.1};
-    case KeypointMark::kSaddle:
-      return {0.1, 0.7, 0.2};
-    case KeypointMark::kMinimum:
-      return {1., 0.9, 0.1};
-  }
-  LOG(FATAL) << "not a mark: " << static_cast<int>(mark);
+Color KeypointColor(const KeypointKind kind) {
+  return kind == KeypointKind::kMaximum  ? Color{0.9, 0.1, 0.1}
+         : kind == KeypointKind::kSaddle ? Color{0.1, 0.7, 0.2}
+                                         : Color{1., 0.9, 0.1};
+}
+
+// From 0 at a wall to 1 at `full` metres.
+double Fraction(const double distance, const double full) {
+  return std::clamp(distance / full, 0., 1.);
 }
 
 // From blue on walls to yellow far from them.
 Color HeightColor(const double distance) {
-  const double f = std::clamp(distance / kSurfaceColorMeters, 0., 1.);
+  const double f = Fraction(distance, kSurfaceColorMeters);
   constexpr Color kLow{0.25, 0.25, 0.62};
   constexpr Color kMiddle{0.25, 0.7, 0.72};
   constexpr Color kHigh{1., 0.93, 0.45};
@@ -48,19 +55,72 @@ Color HeightColor(const double distance) {
                  : Mix(kMiddle, kHigh, 2. * f - 1.);
 }
 
+Color HatchColor(const int x, const int y) {
+  return (x + y) % 8 == 0 ? kHatch : kUnknownCell;
+}
+
+Eigen::AlignedBox2d BoundsOf(const CellGeometry& geometry) {
+  return Eigen::AlignedBox2d(
+      Eigen::Vector2d::Zero(),
+      geometry.resolution * geometry.size.cast<double>().matrix());
+}
+
+Eigen::Array2i CellOf(const CellGeometry& geometry,
+                      const Eigen::Vector2d& p_grid) {
+  return (p_grid.array() / geometry.resolution).floor().cast<int>();
+}
+
+// The distance in the cell that holds the point, where it was observed.
+std::optional<double> ObservedDistance(const DistanceField& field,
+                                       const Eigen::Vector2d& p_grid) {
+  const Eigen::Array2i cell = CellOf(field.geometry, p_grid);
+  if (!field.geometry.Contains(cell) || !field.observed(cell.x(), cell.y())) {
+    return std::nullopt;
+  }
+  return static_cast<double>(field.distance(cell.x(), cell.y()));
+}
+
+// As ObservedDistance, but bilinear between the centres of cells.
+std::optional<double> SmoothDistance(const DistanceField& field,
+                                     const Eigen::Vector2d& p_grid) {
+  const std::optional<double> distance = ObservedDistance(field, p_grid);
+  if (!distance) return std::nullopt;
+  const std::optional<FieldSample> sample = SampleField(field, p_grid);
+  return sample ? sample->distance : *distance;
+}
+
+// How strongly a contour between two neighbouring pixels is drawn; 0 where
+// there is none.
+double ContourStrength(const double here, const double next) {
+  const double level = std::floor(here / kContourIntervalMeters);
+  const double other = std::floor(next / kContourIntervalMeters);
+  if (other == level) return 0.;
+  const bool is_wall = std::max(level, other) == 0.;
+  return is_wall ? 1. : 0.35;
+}
+
+// Calls back with the centre of each observed cell in the grid frame and its
+// distance.
+void ForEachObserved(
+    const DistanceField& field,
+    const std::function<void(const Eigen::Vector2d&, double)>& on_cell) {
+  for (int j = 0; j < field.geometry.size.y(); ++j) {
+    for (int i = 0; i < field.geometry.size.x(); ++i) {
+      if (!field.observed(i, j)) continue;
+      on_cell(field.geometry.CellsToGrid(Eigen::Vector2d(i, j)),
+              field.distance(i, j));
+    }
+  }
+}
+
 // The box that holds all but one in a hundred of the observed cells on each
 // side, in the grid frame [m]: single beams through doors reach far.
 Eigen::AlignedBox2d ObservedBounds(const DistanceField& field) {
   std::vector<double> xs, ys;
-  for (int j = 0; j < field.geometry.size.y(); ++j) {
-    for (int i = 0; i < field.geometry.size.x(); ++i) {
-      if (!field.observed(i, j)) continue;
-      const Eigen::Vector2d p_grid =
-          field.geometry.CellsToGrid(Eigen::Vector2d(i, j));
-      xs.push_back(p_grid.x());
-      ys.push_back(p_grid.y());
-    }
-  }
+  ForEachObserved(field, [&](const Eigen::Vector2d& p_grid, double) {
+    xs.push_back(p_grid.x());
+    ys.push_back(p_grid.y());
+  });
   if (xs.empty()) return {Eigen::Vector2d(0., 0.), Eigen::Vector2d(1., 1.)};
   std::sort(xs.begin(), xs.end());
   std::sort(ys.begin(), ys.end());
@@ -72,81 +132,24 @@ Eigen::AlignedBox2d ObservedBounds(const DistanceField& field) {
   return {low - margin, high + margin};
 }
 
-int NumPixels(const double length, const double pixels_per_meter,
-              const int max_pixels) {
-  return std::clamp(static_cast<int>(std::lround(length * pixels_per_meter)), 1,
-                    max_pixels);
-}
-
-// The distance in the cell that holds the point, where it was observed.
-std::optional<double> ObservedDistance(const DistanceField& field,
-                                       const Eigen::Vector2d& p_grid) {
-  const Eigen::Array2i cell =
-      (p_grid.array() / field.geometry.resolution).floor().cast<int>();
-  if (!field.geometry.Contains(cell) || !field.observed(cell.x(), cell.y())) {
-    return std::nullopt;
-  }
-  return static_cast<double>(field.distance(cell.x(), cell.y()));
-}
-
-// An axonometric view: where a point of the surface is seen, to the right, and
-// up [m].
+// An axonometric view of the surface over `plane`, in the grid frame.
 struct ObliqueView {
-  Eigen::Vector2d centre;  // of the plane
+  Eigen::AlignedBox2d plane;
 
   // To the right, and away from the viewer.
   [[nodiscard]] Eigen::Vector2d Turned(const Eigen::Vector2d& p_grid) const {
-    return Eigen::Rotation2Dd(-kAzimuth) * (p_grid - centre);
+    return Eigen::Rotation2Dd(-kAzimuth) * (p_grid - plane.center());
   }
   [[nodiscard]] Eigen::Vector2d ToGrid(const Eigen::Vector2d& turned) const {
-    return Eigen::Rotation2Dd(kAzimuth) * turned + centre;
+    return Eigen::Rotation2Dd(kAzimuth) * turned + plane.center();
   }
-  [[nodiscard]] static double Height(const double depth,
-                                     const double distance) {
-    return depth * std::sin(kElevation) +
-           kHeightScale * distance * std::cos(kElevation);
-  }
-};
-
-struct SurfaceSheet {
-  ObliqueView view;
-  Eigen::AlignedBox2d plane;   // what is shown, in the grid frame
-  Eigen::AlignedBox2d turned;  // all corners of the plane
-  Eigen::AlignedBox2d seen;    // all that is seen [m]
-  double pixels_per_meter = 1.;
-
-  [[nodiscard]] Eigen::Vector2d ToPixels(const double right,
-                                         const double up) const {
-    return pixels_per_meter *
-           Eigen::Vector2d(right - seen.min().x(), seen.max().y() - up);
+  // Where a point of the surface is seen, to the right, and up [m].
+  [[nodiscard]] static Eigen::Vector2d Seen(const Eigen::Vector2d& turned,
+                                            const double distance) {
+    return {turned.x(), turned.y() * std::sin(kElevation) +
+                            kHeightScale * distance * std::cos(kElevation)};
   }
 };
-
-SurfaceSheet PlaceSurface(const DistanceField& field, const int max_pixels) {
-  const Eigen::AlignedBox2d bounds = ObservedBounds(field);
-  SurfaceSheet sheet;
-  sheet.plane = bounds;
-  sheet.view.centre = bounds.center();
-  for (const double x : {bounds.min().x(), bounds.max().x()}) {
-    for (const double y : {bounds.min().y(), bounds.max().y()}) {
-      sheet.turned.extend(sheet.view.Turned({x, y}));
-    }
-  }
-  for (int j = 0; j < field.geometry.size.y(); ++j) {
-    for (int i = 0; i < field.geometry.size.x(); ++i) {
-      if (!field.observed(i, j)) continue;
-      const Eigen::Vector2d turned =
-          sheet.view.Turned(field.geometry.CellsToGrid(Eigen::Vector2d(i, j)));
-      sheet.seen.extend(Eigen::Vector2d(
-          turned.x(), ObliqueView::Height(turned.y(), field.distance(i, j))));
-    }
-  }
-  if (sheet.seen.isEmpty()) sheet.seen.extend(Eigen::Vector2d(0., 0.));
-  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(0.3);
-  sheet.seen = {sheet.seen.min() - margin, sheet.seen.max() + margin};
-  sheet.pixels_per_meter = max_pixels / sheet.seen.sizes().maxCoeff();
-  return sheet;
-}
 
 // How bright the surface is where it leans: lit from the upper left.
 double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
@@ -161,25 +164,25 @@ double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
 }
 
 // Draws one column of pixels from front to back: what is lower than what was
-// drawn before it is hidden behind it.
-void DrawSurfaceColumn(const DistanceField& field, const SurfaceSheet& sheet,
-                       const int x, Picture* const picture) {
-  const double step =
-      std::min(0.5 * field.geometry.resolution, 0.5 / sheet.pixels_per_meter);
-  const double right =
-      sheet.seen.min().x() + (x + 0.5) / sheet.pixels_per_meter;
-  int horizon = picture->height();
+// drawn before it is hidden behind it. `depths` are those of the plane.
+void DrawSurfaceColumn(const DistanceField& field, const ObliqueView& view,
+                       const std::pair<double, double>& depths, const int x,
+                       Sheet* const sheet) {
+  const double step = std::min(0.5 * field.geometry.resolution,
+                               0.5 / sheet->frame.pixels_per_meter);
+  const double right = sheet->frame.CentreOf(x, 0).x();
+  int horizon = sheet->picture.height();
   bool follows_observed = false;
-  for (double depth = sheet.turned.min().y(); depth <= sheet.turned.max().y();
-       depth += step) {
-    const Eigen::Vector2d p_grid = sheet.view.ToGrid({right, depth});
+  for (double depth = depths.first; depth <= depths.second; depth += step) {
+    const Eigen::Vector2d p_grid = view.ToGrid({right, depth});
     const std::optional<double> distance = ObservedDistance(field, p_grid);
-    if (!distance || !sheet.plane.contains(p_grid)) {
+    if (!distance || !view.plane.contains(p_grid)) {
       follows_observed = false;
       continue;
     }
     const int row = static_cast<int>(std::floor(
-        sheet.ToPixels(right, ObliqueView::Height(depth, *distance)).y()));
+        sheet->frame.ToPixels(ObliqueView::Seen({right, depth}, *distance))
+            .y()));
     // What rises is drawn down to the horizon, but is no cliff where an
     // observed part begins.
     const int lowest = follows_observed ? horizon : std::min(horizon, row + 1);
@@ -188,25 +191,9 @@ void DrawSurfaceColumn(const DistanceField& field, const SurfaceSheet& sheet,
     const Color color =
         Mix(kBlack, HeightColor(*distance), Brightness(field, p_grid));
     for (int y = std::max(0, row); y < lowest; ++y) {
-      picture->BlendPixel(x, y, color);
+      sheet->picture.BlendPixel(x, y, color);
     }
     horizon = row;
-  }
-}
-
-void DrawSurfaceKeypoints(const DistanceField& field, const SurfaceSheet& sheet,
-                          const std::vector<MarkedKeypoint>& keypoints,
-                          Picture* const picture) {
-  const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
-  for (const MarkedKeypoint& keypoint : keypoints) {
-    const Eigen::Vector2d p_grid = T_grid_submap * keypoint.position;
-    const std::optional<FieldSample> sample = SampleField(field, p_grid);
-    if (!sample || !sheet.plane.contains(p_grid)) continue;
-    const Eigen::Vector2d turned = sheet.view.Turned(p_grid);
-    picture->DrawCircle(
-        sheet.ToPixels(turned.x(),
-                       ObliqueView::Height(turned.y(), sample->distance)),
-        3.5, MarkColor(keypoint.mark), kBlack);
   }
 }
 
@@ -215,41 +202,15 @@ struct FeatureWindow {
   Eigen::Vector2d centre;
   double radius;  // [m]
   PixelFrame frame;
+
+  [[nodiscard]] Eigen::Vector2d PixelAtAngle(const double angle) const {
+    return frame.ToPixels(
+        centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
 };
 
-Eigen::Vector2d AtAngle(const FeatureWindow& window, const double angle) {
-  return window.centre +
-         window.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-}
-
-void DrawWindowField(const DistanceField& field, const PixelFrame& frame,
-                     Picture* const picture) {
-  constexpr Color kWall{0.55, 0.3, 0.1};
-  constexpr Color kFar{0.1, 0.35, 0.7};
-  for (int y = 0; y < picture->height(); ++y) {
-    for (int x = 0; x < picture->width(); ++x) {
-      const std::optional<double> distance =
-          ObservedDistance(field, frame.CentreOf(x, y));
-      if (!distance) continue;
-      const double fraction =
-          std::sqrt(std::clamp(*distance / kSurfaceColorMeters, 0., 1.));
-      picture->BlendPixel(
-          x, y, *distance <= 0. ? kWall : Mix(kWhite, kFar, 0.8 * fraction));
-    }
-  }
-}
-
-// An arrow without a head, but with a dot at its foot.
-void DrawGradient(const Eigen::Vector2d& foot, const Eigen::Vector2d& tip,
-                  const PixelFrame& frame, Picture* const picture) {
-  constexpr Color kDark{0.1, 0.1, 0.1};
-  picture->DrawPolyline({frame.ToPixels(foot), frame.ToPixels(tip)}, 1.5,
-                        kDark);
-  picture->DrawCircle(frame.ToPixels(foot), 1.3, kDark, kDark);
-}
-
-// The gradients at every third cell in the window, as long as they weigh.
-// `sigma` is that of the weights [m].
+// The gradients at every third cell in the window, as long as they weigh, with
+// a dot at the foot. `sigma` is that of the weights [m].
 void DrawWeighedGradients(const CellGeometry& geometry,
                           const Eigen::ArrayXXf& smoothed,
                           const FeatureWindow& window, const double sigma,
@@ -274,83 +235,126 @@ void DrawWeighedGradients(const CellGeometry& geometry,
           0.5f * (smoothed(i + 1, j) - smoothed(i - 1, j)),
           0.5f * (smoothed(i, j + 1) - smoothed(i, j - 1)));
       const double weight = std::exp(-0.5 * squared / (sigma * sigma));
-      DrawGradient(p_grid,
-                   p_grid + kStride * geometry.resolution * weight * gradient,
-                   window.frame, picture);
+      const Eigen::Vector2d foot = window.frame.ToPixels(p_grid);
+      picture->DrawPolyline(
+          {foot, window.frame.ToPixels(p_grid + kStride * geometry.resolution *
+                                                    weight * gradient)},
+          1.5, kDark);
+      picture->DrawCircle(foot, 1.3, kDark, kDark);
     }
   }
 }
 
-void DrawRim(const FeatureWindow& window, Picture* const picture) {
-  std::vector<Eigen::Vector2d> circle;
-  for (int k = 0; k <= 72; ++k) {
-    circle.push_back(window.frame.ToPixels(AtAngle(window, k * M_PI / 36.)));
-  }
-  picture->DrawPolyline(circle, 2., kBlack);
-}
-
-void DrawDirection(const FeatureWindow& window, const double orientation,
-                   Picture* const picture) {
-  picture->DrawPolyline({window.frame.ToPixels(window.centre),
-                         window.frame.ToPixels(AtAngle(window, orientation))},
-                        3., Color{0.85, 0.1, 0.1});
-}
-
-KeypointMark MarkOf(const KeypointKind kind) {
-  return kind == KeypointKind::kMaximum  ? KeypointMark::kMaximum
-         : kind == KeypointKind::kSaddle ? KeypointMark::kSaddle
-                                         : KeypointMark::kMinimum;
+void TintSubmap(const ShownSubmap& submap, const PixelFrame& frame,
+                const Color& color, Picture* const picture) {
+  const Rigid2 T_grid_map =
+      (submap.T_map_submap * submap.field.geometry.T_submap_grid).Inverse();
+  picture->BlendPixels([&](const int x, const int y) -> std::optional<Color> {
+    const std::optional<double> distance =
+        ObservedDistance(submap.field, T_grid_map * frame.CentreOf(x, y));
+    if (!distance) return std::nullopt;
+    Color tint = color;
+    if (*distance > 0.) {
+      tint.alpha =
+          0.12 + 0.4 * std::sqrt(Fraction(*distance, kFullColorMeters));
+    }
+    return tint;
+  });
 }
 
 }  // namespace
 
-std::vector<MarkedKeypoint> MarkKeypoints(const FeatureSet& features) {
-  std::vector<MarkedKeypoint> marked;
-  for (const Feature& feature : features.features) {
-    marked.push_back(
-        {feature.keypoint.position, MarkOf(feature.keypoint.kind)});
+Picture DrawOccupancyGrid(const OccupancyGrid& grid, const int max_pixels) {
+  Sheet sheet = MakeSheet(BoundsOf(grid.geometry), max_pixels, kUnknownCell);
+  sheet.picture.BlendPixels([&](const int x, const int y) {
+    const Eigen::Array2i cell =
+        CellOf(grid.geometry, sheet.frame.CentreOf(x, y));
+    if (!grid.geometry.Contains(cell) || !grid.known(cell.x(), cell.y())) {
+      return HatchColor(x, y);
+    }
+    const double grey = std::clamp(
+        1. - static_cast<double>(grid.probability(cell.x(), cell.y())), 0., 1.);
+    return Color{grey, grey, grey};
+  });
+  return std::move(sheet.picture);
+}
+
+Picture DrawDistanceField(const DistanceField& field,
+                          const std::vector<Feature>& features,
+                          const int max_pixels) {
+  Sheet sheet = MakeSheet(BoundsOf(field.geometry), max_pixels, kUnknownCell);
+  const auto distance_at = [&](const int x, const int y) {
+    return SmoothDistance(field, sheet.frame.CentreOf(x, y));
+  };
+  sheet.picture.BlendPixels([&](const int x, const int y) {
+    const std::optional<double> here = distance_at(x, y);
+    if (!here) return HatchColor(x, y);
+    const std::optional<double> right = distance_at(x + 1, y);
+    const std::optional<double> below = distance_at(x, y + 1);
+    double strength = right ? ContourStrength(*here, *right) : 0.;
+    if (strength == 0. && below) strength = ContourStrength(*here, *below);
+    const Color color =
+        Mix(kWhite, *here < 0. ? kInside : kFar,
+            std::sqrt(Fraction(std::abs(*here), kFullColorMeters)));
+    return Mix(color, kBlack, strength);
+  });
+  const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
+  for (const Feature& feature : features) {
+    sheet.picture.DrawCircle(
+        sheet.frame.ToPixels(T_grid_submap * feature.keypoint.position), 3.5,
+        KeypointColor(feature.keypoint.kind), kBlack);
   }
-  return marked;
+  return std::move(sheet.picture);
 }
 
 Picture DrawClearanceMask(const DistanceField& field,
                           const double max_clearance, const int max_pixels) {
-  CHECK_GE(max_pixels, 1);
-  const Eigen::AlignedBox2d bounds = ObservedBounds(field);
-  const PixelFrame frame{max_pixels / bounds.sizes().maxCoeff(),
-                         {bounds.min().x(), bounds.max().y()}};
-  Picture picture(
-      NumPixels(bounds.sizes().x(), frame.pixels_per_meter, max_pixels),
-      NumPixels(bounds.sizes().y(), frame.pixels_per_meter, max_pixels),
-      kUnknownFace);
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      const std::optional<double> distance =
-          ObservedDistance(field, frame.CentreOf(x, y));
-      if (!distance) continue;
-      picture.BlendPixel(x, y,
-                         *distance <= 0.              ? kBlack
-                         : *distance <= max_clearance ? kWhite
-                                                      : kShade);
-    }
-  }
-  return picture;
+  Sheet sheet = MakeSheet(ObservedBounds(field), max_pixels, kUnknownFace);
+  sheet.picture.BlendPixels(
+      [&](const int x, const int y) -> std::optional<Color> {
+        const std::optional<double> distance =
+            ObservedDistance(field, sheet.frame.CentreOf(x, y));
+        if (!distance) return std::nullopt;
+        return *distance <= 0.              ? kBlack
+               : *distance <= max_clearance ? kWhite
+                                            : kShade;
+      });
+  return std::move(sheet.picture);
 }
 
 Picture DrawFieldSurface(const DistanceField& field,
-                         const std::vector<MarkedKeypoint>& keypoints,
+                         const std::vector<Feature>& features,
                          const int max_pixels) {
-  CHECK_GE(max_pixels, 1);
-  const SurfaceSheet sheet = PlaceSurface(field, max_pixels);
-  Picture picture(
-      NumPixels(sheet.seen.sizes().x(), sheet.pixels_per_meter, max_pixels),
-      NumPixels(sheet.seen.sizes().y(), sheet.pixels_per_meter, max_pixels),
-      kWhite);
-  for (int x = 0; x < picture.width(); ++x) {
-    DrawSurfaceColumn(field, sheet, x, &picture);
+  const ObliqueView view{ObservedBounds(field)};
+  Eigen::AlignedBox2d corners;
+  for (const double x : {view.plane.min().x(), view.plane.max().x()}) {
+    for (const double y : {view.plane.min().y(), view.plane.max().y()}) {
+      corners.extend(view.Turned({x, y}));
+    }
   }
-  DrawSurfaceKeypoints(field, sheet, keypoints, &picture);
-  return picture;
+  Eigen::AlignedBox2d seen;
+  ForEachObserved(
+      field, [&](const Eigen::Vector2d& p_grid, const double distance) {
+        seen.extend(ObliqueView::Seen(view.Turned(p_grid), distance));
+      });
+  if (seen.isEmpty()) seen.extend(Eigen::Vector2d(0., 0.));
+  const Eigen::Vector2d margin = Eigen::Vector2d::Constant(0.3);
+  Sheet sheet =
+      MakeSheet({seen.min() - margin, seen.max() + margin}, max_pixels, kWhite);
+  for (int x = 0; x < sheet.picture.width(); ++x) {
+    DrawSurfaceColumn(field, view, {corners.min().y(), corners.max().y()}, x,
+                      &sheet);
+  }
+  const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
+  for (const Feature& feature : features) {
+    const Eigen::Vector2d p_grid = T_grid_submap * feature.keypoint.position;
+    const std::optional<FieldSample> sample = SampleField(field, p_grid);
+    if (!sample || !view.plane.contains(p_grid)) continue;
+    sheet.picture.DrawCircle(sheet.frame.ToPixels(ObliqueView::Seen(
+                                 view.Turned(p_grid), sample->distance)),
+                             3.5, KeypointColor(feature.keypoint.kind), kBlack);
+  }
+  return std::move(sheet.picture);
 }
 
 Picture DrawFeatureWindow(const DescriptorOptions& options,
@@ -368,15 +372,27 @@ Picture DrawFeatureWindow(const DescriptorOptions& options,
       options.radius_meters,
       {max_pixels / (2. * reach), centre + reach * Eigen::Vector2d(-1., 1.)}};
   Picture picture(max_pixels, max_pixels, kUnknownFace);
-  DrawWindowField(field, window.frame, &picture);
+  picture.BlendPixels([&](const int x, const int y) -> std::optional<Color> {
+    const std::optional<double> distance =
+        ObservedDistance(field, window.frame.CentreOf(x, y));
+    if (!distance) return std::nullopt;
+    const double fraction = std::sqrt(Fraction(*distance, kSurfaceColorMeters));
+    return *distance <= 0. ? kInside : Mix(kWhite, kFar, 0.8 * fraction);
+  });
   DrawWeighedGradients(field.geometry, smoothed, window,
                        options.gaussian_sigma_ratio * options.radius_meters,
                        &picture);
-  DrawRim(window, &picture);
-  DrawDirection(window, feature.orientation + T_grid_submap.rotation(),
-                &picture);
+  std::vector<Eigen::Vector2d> rim;
+  for (int k = 0; k <= 72; ++k) {
+    rim.push_back(window.PixelAtAngle(k * M_PI / 36.));
+  }
+  picture.DrawPolyline(rim, 2., kBlack);
+  picture.DrawPolyline(
+      {window.frame.ToPixels(centre),
+       window.PixelAtAngle(feature.orientation + T_grid_submap.rotation())},
+      3., Color{0.85, 0.1, 0.1});
   picture.DrawCircle(window.frame.ToPixels(centre), 4.,
-                     MarkColor(MarkOf(feature.keypoint.kind)), kBlack);
+                     KeypointColor(feature.keypoint.kind), kBlack);
   return picture;
 }
 
@@ -404,6 +420,34 @@ std::string RenderDescriptor(const Eigen::VectorXf& descriptor) {
   bar(num_bins, descriptor[num_bins], &distance.points);
   plot.series = {histogram, distance};
   return RenderLinePlot(plot);
+}
+
+Picture DrawMatchOnMap(const MapPainter& map, const ShownSubmap& reference,
+                       const ShownSubmap& query,
+                       const std::vector<PointPair>& inliers) {
+  constexpr Color kPale{1., 1., 1., 0.55};
+  constexpr Color kLine{0., 0., 0., 0.7};
+  Picture picture = map.Paint();
+  const PixelFrame& frame = map.frame();
+  picture.BlendPixels([&](int, int) { return kPale; });
+  TintSubmap(reference, frame, kReference, &picture);
+  TintSubmap(query, frame, kQuery, &picture);
+  for (const auto& [trajectory, path] : reference.paths) {
+    DrawTrajectory(path, frame, kReference, &picture);
+  }
+  for (const auto& [trajectory, path] : query.paths) {
+    DrawTrajectory(path, frame, kQuery, &picture);
+  }
+  for (const auto& [p_reference, p_query] : inliers) {
+    const Eigen::Vector2d a =
+        frame.ToPixels(reference.T_map_submap * p_reference);
+    const Eigen::Vector2d b = frame.ToPixels(query.T_map_submap * p_query);
+    picture.DrawPolyline({a, b}, 1., kLine);
+    picture.DrawCircle(a, 1.5, kBlack, kBlack);
+    picture.DrawCircle(b, 1.5, kBlack, kBlack);
+  }
+  DrawScaleBar(frame, &picture);
+  return picture;
 }
 
 }  // namespace cartographer_sdf

@@ -1,26 +1,35 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The pictures of [Millane2019] that show how features come about, with their
-// longer side at about `max_pixels`. All in the grid frame, x to the right, y
-// up, unless said otherwise.
+// The pictures of [Millane2019], with their longer side at about `max_pixels`.
+// All in the grid frame, x to the right, y up, unless said otherwise. Maxima
+// are red, saddles green, minima yellow.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_FEATURE_PICTURES_H_
 #define CARTOGRAPHER_SDF_REPORT_FEATURE_PICTURES_H_
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "cartographer_sdf/feature/descriptor.h"
 #include "cartographer_sdf/field/distance_field.h"
+#include "cartographer_sdf/report/map_painter.h"
 #include "cartographer_sdf/report/picture.h"
 #include "cartographer_sdf/report/submap_pictures.h"
 
 namespace cartographer_sdf {
 
-// As DrawDistanceField marks them.
-[[nodiscard]] std::vector<MarkedKeypoint> MarkKeypoints(
-    const FeatureSet& features);
+// Free space white, walls black, unknown grey.
+[[nodiscard]] Picture DrawOccupancyGrid(const OccupancyGrid& grid,
+                                        int max_pixels);
+
+// The signed distance at the centres of cells: white at the wall, blue in free
+// space, brown inside of obstacles, with a contour line every half metre;
+// hatched where it was not observed. With keypoints.
+[[nodiscard]] Picture DrawDistanceField(const DistanceField& field,
+                                        const std::vector<Feature>& features,
+                                        int max_pixels);
 
 // Where features may lie (Fig. 6): observed cells whose distance to a wall is
 // at most that stay white, others are shaded; walls are black.
@@ -29,9 +38,9 @@ namespace cartographer_sdf {
 
 // The observed field as a surface over the plane (Fig. 3), seen obliquely from
 // above, higher where walls are far; with keypoints in their places.
-[[nodiscard]] Picture DrawFieldSurface(
-    const DistanceField& field, const std::vector<MarkedKeypoint>& keypoints,
-    int max_pixels);
+[[nodiscard]] Picture DrawFieldSurface(const DistanceField& field,
+                                       const std::vector<Feature>& features,
+                                       int max_pixels);
 
 // The window of a descriptor (Fig. 4b): the field around the keypoint, with an
 // arrow for the gradient at each third cell as it is weighed, and a long one
@@ -44,6 +53,22 @@ namespace cartographer_sdf {
 // The descriptor (Fig. 4c): the histogram of orientations and, last, the mean
 // distance. A plot as of svg_plot.h.
 [[nodiscard]] std::string RenderDescriptor(const Eigen::VectorXf& descriptor);
+
+// One of two matched submaps, and where its robot drove, in the map frame.
+struct ShownSubmap {
+  DistanceField field;
+  Rigid2 T_map_submap;
+  std::map<int, std::vector<Eigen::Vector2d>> paths;  // by trajectory
+};
+
+// A match on the map that it was found in (Fig. 1 and 8). The map, pale; the
+// two submaps as distance functions, the reference and its paths blue, the
+// query and its paths red, darker where walls are far; lines between the
+// features that agree, black.
+[[nodiscard]] Picture DrawMatchOnMap(const MapPainter& map,
+                                     const ShownSubmap& reference,
+                                     const ShownSubmap& query,
+                                     const std::vector<PointPair>& inliers);
 
 }  // namespace cartographer_sdf
 

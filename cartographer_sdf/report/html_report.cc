@@ -10,8 +10,9 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "cartographer_sdf/file/whole_file.h"
-#include "cartographer_sdf/report/markup.h"
+#include "cartographer_sdf/report/text.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -107,15 +108,18 @@ std::string RenderSummary(const ReportContent& content) {
   return html.empty() ? html : Section("Summary", html);
 }
 
-std::string RenderMaps(const std::vector<ReportedPicture>& maps) {
-  if (maps.empty()) return "";
-  std::string html = "<div class=\"columns\">\n";
-  for (const ReportedPicture& map : maps) {
-    absl::StrAppend(&html, "<figure><figcaption>", EscapeMarkup(map.caption),
-                    " (click to enlarge)</figcaption>",
-                    Zoomable(map.png, map.caption), "</figure>\n");
-  }
-  return Section("Map", html + "</div>\n");
+// Side by side; nothing where there are none.
+std::string Columns(const std::string& heading,
+                    const std::vector<std::string>& columns) {
+  if (columns.empty()) return "";
+  return Section(heading, absl::StrCat("<div class=\"columns\">\n",
+                                       absl::StrJoin(columns, ""), "</div>\n"));
+}
+
+std::string RenderMap(const ReportedPicture& map) {
+  return absl::StrCat("<figure><figcaption>", EscapeMarkup(map.caption),
+                      " (click to enlarge)</figcaption>",
+                      Zoomable(map.png, map.caption), "</figure>\n");
 }
 
 std::string IdText(const SubmapId& id) {
@@ -164,58 +168,35 @@ constexpr char kClosureTableHead[] =
     "<th>y [m]</th><th>yaw [&#176;]</th><th>matched pair</th></tr></thead>\n"
     "<tbody>\n";
 
-std::string RenderPictureLegend(const int num_pictures,
-                                const int num_left_out) {
-  std::string html;
-  if (num_pictures > 0) {
-    html +=
-        "<p class=\"legend\">Pictures: walls of the reference "
-        "<span class=\"key\" style=\"background:#0d2673\"></span>blue, of the "
-        "query <span class=\"key\" style=\"background:#d91a1a\"></span>red, of "
-        "either in the free space of the other "
-        "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
-  }
-  if (num_left_out > 0) {
-    absl::StrAppend(&html, "<p class=\"legend\">", num_left_out,
-                    " pictures are left out to keep this page small.</p>\n");
-  }
-  return html;
-}
+constexpr char kPictureLegend[] =
+    "<p class=\"legend\">Pictures: walls of the reference "
+    "<span class=\"key\" style=\"background:#0d2673\"></span>blue, of the "
+    "query <span class=\"key\" style=\"background:#d91a1a\"></span>red, of "
+    "either in the free space of the other "
+    "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
 
 std::string RenderClosures(const std::string& heading,
-                           const std::vector<ReportedClosure>& closures,
-                           const ReportOptions& options) {
+                           const std::vector<ReportedClosure>& closures) {
   if (closures.empty()) return "";
   std::string rows;
-  int num_pictures = 0;
   int num_left_out = 0;
   size_t num_bytes = 0;
   for (const ReportedClosure& closure : closures) {
-    const bool has_picture = !closure.png.empty();
-    const bool shows_picture =
-        has_picture && num_pictures < options.max_closure_pictures &&
-        num_bytes + closure.png.size() <= kMaxClosurePictureBytes;
-    if (shows_picture) {
-      ++num_pictures;
-      num_bytes += closure.png.size();
-    } else if (has_picture) {
-      ++num_left_out;
-    }
-    rows += RenderClosure(closure, shows_picture);
+    const bool fits = num_bytes + closure.png.size() <= kMaxClosurePictureBytes;
+    if (fits) num_bytes += closure.png.size();
+    num_left_out += !fits;
+    rows += RenderClosure(closure, fits && !closure.png.empty());
   }
   return Section(
       heading,
-      absl::StrCat(RenderPictureLegend(num_pictures, num_left_out),
-                   kClosureTableHead, rows, "</tbody></table></div>\n"));
-}
-
-std::string RenderHistograms(const std::vector<HistogramPlot>& histograms) {
-  if (histograms.empty()) return "";
-  std::string html = "<div class=\"columns\">\n";
-  for (const HistogramPlot& histogram : histograms) {
-    absl::StrAppend(&html, "<div>", RenderHistogram(histogram), "</div>\n");
-  }
-  return Section("Residuals", html + "</div>\n");
+      absl::StrCat(
+          num_bytes > 0 ? kPictureLegend : "",
+          num_left_out > 0
+              ? absl::StrCat(
+                    "<p class=\"legend\">", num_left_out,
+                    " pictures are left out to keep this page small.</p>\n")
+              : "",
+          kClosureTableHead, rows, "</tbody></table></div>\n"));
 }
 
 std::string RenderStages(
@@ -254,29 +235,31 @@ std::string RenderOptions(const std::string& options) {
 
 }  // namespace
 
-std::string RenderReport(const ReportContent& content,
-                         const ReportOptions& options) {
+std::string RenderReport(const ReportContent& content) {
   const std::string title = EscapeMarkup(content.title);
-  std::string subtitle;
-  if (!content.subtitle.empty()) {
-    subtitle = absl::StrCat("<p class=\"subtitle\">",
-                            EscapeMarkup(content.subtitle), "</p>\n");
+  std::vector<std::string> maps, histograms;
+  for (const ReportedPicture& map : content.maps) {
+    maps.push_back(RenderMap(map));
+  }
+  for (const HistogramPlot& histogram : content.histograms) {
+    histograms.push_back(
+        absl::StrCat("<div>", RenderHistogram(histogram), "</div>\n"));
   }
   return absl::StrCat(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, "
       "initial-scale=1\"/>\n<title>",
       title, "</title>\n<style>", kStyle, "</style>\n</head>\n<body>\n<header>",
-      "<h1>", title, "</h1>\n", subtitle, "</header>\n<main>\n",
-      RenderSummary(content), RenderMaps(content.maps),
-      RenderClosures(content.closures_heading, content.closures, options),
-      RenderHistograms(content.histograms), RenderStages(content.stages),
+      "<h1>", title, "</h1>\n<p class=\"subtitle\">",
+      EscapeMarkup(content.subtitle), "</p>\n</header>\n<main>\n",
+      RenderSummary(content), Columns("Map", maps),
+      RenderClosures(content.closures_heading, content.closures),
+      Columns("Residuals", histograms), RenderStages(content.stages),
       RenderOptions(content.options), "</main>\n</body>\n</html>\n");
 }
 
 absl::Status WriteReport(const std::string& directory,
-                         const ReportContent& content,
-                         const ReportOptions& options) {
+                         const ReportContent& content) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) {
@@ -285,7 +268,7 @@ absl::Status WriteReport(const std::string& directory,
   }
   return WriteWholeFile(
       (std::filesystem::path(directory) / "index.html").string(),
-      RenderReport(content, options));
+      RenderReport(content));
 }
 
 }  // namespace cartographer_sdf

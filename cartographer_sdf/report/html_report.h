@@ -8,13 +8,14 @@
 #ifndef CARTOGRAPHER_SDF_REPORT_HTML_REPORT_H_
 #define CARTOGRAPHER_SDF_REPORT_HTML_REPORT_H_
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "cartographer_sdf/recognition/match.h"
-#include "cartographer_sdf/report/report_options.h"
+#include "cartographer_sdf/report/picture.h"
 #include "cartographer_sdf/report/svg_plot.h"
 
 namespace cartographer_sdf {
@@ -31,6 +32,8 @@ struct ReportedClosure {
   // In place of "accepted" or "refused", where that is not the word.
   std::string status;
   std::string reason;
+  // Of its line in pictures of the map; none where it has no line.
+  std::optional<Color> link;
   // Of the matched pair (DrawMatchedPair); empty where it was not drawn.
   std::string png;
 };
@@ -53,15 +56,13 @@ struct ReportContent {
   std::string options;
 };
 
-// Pictures of closures beyond the limit of the options, or beyond what makes a
-// page of some 30 MB, are left out, the last ones first.
-[[nodiscard]] std::string RenderReport(const ReportContent& content,
-                                       const ReportOptions& options);
+// Pictures of closures beyond what makes a page of some 30 MB are left out, the
+// last ones first.
+[[nodiscard]] std::string RenderReport(const ReportContent& content);
 
 // Writes `directory`/index.html; makes the directory where it is missing.
 [[nodiscard]] absl::Status WriteReport(const std::string& directory,
-                                       const ReportContent& content,
-                                       const ReportOptions& options);
+                                       const ReportContent& content);
 
 }  // namespace cartographer_sdf
 

@@ -3,7 +3,110 @@
 
 #include "cartographer_sdf/report/json.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
 namespace cartographer_sdf {
+namespace {
+
+constexpr size_t kMaxNumPlacements = 10;
+
+// Flat: the members of the pose are among the others.
+Json MatchJson(const Match& match) {
+  const PairPose& pair = match.pair;
+  Json json = {{"reference_trajectory", pair.reference.trajectory},
+               {"reference_index", pair.reference.index},
+               {"query_trajectory", pair.query.trajectory},
+               {"query_index", pair.query.index},
+               {"score", pair.score}};
+  json.update(ToJson(pair.T_reference_query));
+  json.update({{"overlap", match.evidence.overlap},
+               {"hit_ratio", match.evidence.HitRatio()},
+               {"contradiction_ratio", match.evidence.ContradictionRatio()}});
+  return json;
+}
+
+// The matches that vote for the answer; none where there is no answer.
+Json VotesJson(const Localization& result) {
+  Json votes = Json::array();
+  if (!result.T_map_query) return votes;
+  for (const size_t vote : result.placements.front().votes) {
+    votes.push_back(MatchJson(result.matches[vote]));
+  }
+  return votes;
+}
+
+// Where else it might be; the best few.
+Json PlacementsJson(const std::vector<Placement>& placements) {
+  Json json = Json::array();
+  for (size_t k = 0; k < std::min(placements.size(), kMaxNumPlacements); ++k) {
+    const Placement& placement = placements[k];
+    json.push_back({{"T_map_query", ToJson(placement.T_map_query)},
+                    {"score", placement.score},
+                    {"matches", placement.votes.size()},
+                    {"rival", placement.is_rival}});
+  }
+  return json;
+}
+
+// Stages that ran twice count once, with the sum.
+Json MillisecondsJson(
+    const std::vector<std::pair<std::string, double>>& stage_seconds) {
+  Json json = Json::object();
+  for (const auto& [stage, seconds] : stage_seconds) {
+    json[stage] = json.value(stage, 0.) + 1000. * seconds;
+  }
+  return json;
+}
+
+Json SessionsJson(const MergingResult& result) {
+  Json json = Json::array();
+  for (const MergedSession& session : result.sessions) {
+    const bool is_merged =
+        session.T_merged_session.has_value() && result.refusal.empty();
+    json.push_back({{"path", session.path},
+                    {"group", session.group},
+                    {"merged", is_merged},
+                    {"T_merged_session", ToJson(session.T_merged_session)}});
+  }
+  return json;
+}
+
+// `certain` and `pose` are the names of members.
+Json AnswerJson(const Localization& result, const char* const certain,
+                const char* const pose) {
+  return {{certain, result.T_map_query.has_value()},
+          {"verdict", LocalizationVerdictName(result.verdict)},
+          {"reason", result.reason},
+          {pose, ToJson(result.T_map_query)},
+          {"score", ToJson(result.score)},
+          {"runner_up_score", ToJson(result.runner_up_score)},
+          {"agreeing", result.num_agreeing},
+          {"contradicting", result.num_contradicting}};
+}
+
+Json LinksJson(const std::vector<SessionLink>& links) {
+  Json json = Json::array();
+  for (const SessionLink& link : links) {
+    json.push_back({{"first", link.first}, {"second", link.second}});
+    json.back().update(
+        AnswerJson(link.localization, "connected", "T_first_second"));
+  }
+  return json;
+}
+
+// How many closures have each status.
+Json StatusesJson(const std::vector<Closure>& closures) {
+  std::map<std::string, int> counts;
+  for (const Closure& closure : closures) {
+    ++counts[ClosureStatusName(closure.status)];
+  }
+  return counts;
+}
+
+}  // namespace
 
 std::string FormatJson(const Json& json) {
   constexpr int kIndent = 2;
@@ -20,6 +123,25 @@ Json ToJson(const Rigid2& pose) {
 
 Json ToJson(const SubmapId& id) {
   return {{"trajectory", id.trajectory}, {"index", id.index}};
+}
+
+Json ToJson(const Localization& result) {
+  Json json = AnswerJson(result, "localized", "T_map_query");
+  json.update({{"closures", VotesJson(result)},
+               {"placements", PlacementsJson(result.placements)},
+               {"milliseconds", MillisecondsJson(result.stage_seconds)}});
+  return json;
+}
+
+Json ToJson(const MergingResult& result) {
+  return {{"merged", result.refusal.empty()},
+          {"reason", result.refusal},
+          {"sessions", SessionsJson(result)},
+          {"pairs", LinksJson(result.links)},
+          {"closures", StatusesJson(result.closed.closures)},
+          {"overlapping_pairs", result.num_overlapping},
+          {"contradicting_pairs", result.contradictions.size()},
+          {"milliseconds", MillisecondsJson(result.stage_seconds)}};
 }
 
 }  // namespace cartographer_sdf

@@ -12,8 +12,10 @@
 #include <string>
 #include <type_traits>
 
+#include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/localization/localizer.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_sdf {
@@ -40,6 +42,12 @@ template <typename T>
     return ToJson(*value);
   }
 }
+
+// The R.json of relocalize.
+[[nodiscard]] Json ToJson(const Localization& result);
+
+// What became of each session, and of each pair.
+[[nodiscard]] Json ToJson(const MergingResult& result);
 
 }  // namespace cartographer_sdf
 

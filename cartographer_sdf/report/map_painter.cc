@@ -10,7 +10,6 @@
 #include <limits>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/report/round_step.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -27,7 +26,6 @@ constexpr double kContrast = 3.;
 // Where a pixel is much larger than a cell, a wall is but a fraction of it.
 constexpr double kMaxWallGain = 4.;
 constexpr double kMarginMeters = 0.5;
-constexpr Color kFree{1., 1., 1.};
 constexpr Color kConflict{0.9, 0.1, 0.1};
 // Beyond it, a pixel is a wall, or free, for sure.
 constexpr double kSureExcess = 0.15;
@@ -95,9 +93,8 @@ MapPainter::MapPainter(const std::vector<PlacedGrid>& grids,
     return std::clamp(static_cast<int>(std::ceil(length / pixel_size - 1e-6)),
                       1, max_pixels);
   };
-  width_ = num_pixels(extent.x());
-  height_ = num_pixels(extent.y());
-  num_samples_ = occupied_ = free_ = Eigen::ArrayXXf::Zero(width_, height_);
+  num_samples_ = occupied_ = free_ =
+      Eigen::ArrayXXf::Zero(num_pixels(extent.x()), num_pixels(extent.y()));
 }
 
 void MapPainter::AddSubmap(const OccupancyGrid& grid,
@@ -110,6 +107,7 @@ void MapPainter::AddSubmap(const OccupancyGrid& grid,
     return frame_.ToPixels(T_map_grid *
                            geometry.CellsToGrid(Eigen::Vector2d(i, j)));
   };
+  const Eigen::Array2d size(num_samples_.rows(), num_samples_.cols());
   const Eigen::Vector2d origin = to_pixels(0., 0.);
   const Eigen::Vector2d along_i = to_pixels(1., 0.) - origin;
   const Eigen::Vector2d along_j = to_pixels(0., 1.) - origin;
@@ -123,10 +121,7 @@ void MapPainter::AddSubmap(const OccupancyGrid& grid,
         const double dj = (sample / kSamplesPerCell + 0.5) / kSamplesPerCell;
         const Eigen::Vector2d pixel =
             origin + (i + di - 0.5) * along_i + (j + dj - 0.5) * along_j;
-        if (!(pixel.x() >= 0. && pixel.x() < width_ && pixel.y() >= 0. &&
-              pixel.y() < height_)) {
-          continue;
-        }
+        if (!((pixel.array() >= 0.) && (pixel.array() < size)).all()) continue;
         const int x = static_cast<int>(pixel.x());
         const int y = static_cast<int>(pixel.y());
         num_samples_(x, y) += 1.f;
@@ -144,45 +139,40 @@ std::optional<double> MapPainter::ExcessAt(const int x, const int y) const {
   return (wall_gain * occupied_(x, y) - free_(x, y)) / num_samples;
 }
 
+Picture MapPainter::UnobservedPicture() const {
+  return Picture(static_cast<int>(num_samples_.rows()),
+                 static_cast<int>(num_samples_.cols()), kUnobserved);
+}
+
 Picture MapPainter::Paint() const {
-  Picture picture(width_, height_, kUnobserved);
-  for (int y = 0; y < height_; ++y) {
-    for (int x = 0; x < width_; ++x) {
-      const std::optional<double> excess = ExcessAt(x, y);
-      if (!excess) continue;
-      const double grey = std::clamp(0.5 - kContrast * *excess, 0., 1.);
-      picture.BlendPixel(x, y, Color{grey, grey, grey});
-    }
-  }
+  Picture picture = UnobservedPicture();
+  picture.BlendPixels([this](const int x, const int y) -> std::optional<Color> {
+    const std::optional<double> excess = ExcessAt(x, y);
+    if (!excess) return std::nullopt;
+    const double grey = std::clamp(0.5 - kContrast * *excess, 0., 1.);
+    return Color{grey, grey, grey};
+  });
   return picture;
 }
 
-Picture PaintOverlaid(const std::vector<const MapPainter*>& maps) {
+Picture PaintOverlaid(const std::vector<MapPainter>& maps) {
   CHECK(!maps.empty());
-  const int width = maps.front()->width();
-  const int height = maps.front()->height();
-  for (const MapPainter* const map : maps) {
-    CHECK(map->width() == width && map->height() == height);
-  }
-  Picture picture(width, height, kUnobserved);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  Picture picture = maps.front().UnobservedPicture();
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
       bool is_known = false, is_free = false, is_wall = false;
-      for (const MapPainter* const map : maps) {
-        const std::optional<double> excess = map->ExcessAt(x, y);
+      for (const MapPainter& map : maps) {
+        const std::optional<double> excess = map.ExcessAt(x, y);
         if (!excess) continue;
         is_known = true;
         is_free |= *excess < -kSureExcess;
         is_wall |= *excess > kSureExcess;
       }
       if (!is_known) continue;
-      picture.BlendPixel(x, y, kFree);
-      if (is_free && is_wall) {
-        picture.BlendPixel(x, y, kConflict);
-        continue;
-      }
-      for (size_t k = 0; k < maps.size(); ++k) {
-        const std::optional<double> excess = maps[k]->ExcessAt(x, y);
+      const bool is_conflict = is_free && is_wall;
+      picture.BlendPixel(x, y, is_conflict ? kConflict : kWhite);
+      for (size_t k = 0; k < maps.size() && !is_conflict; ++k) {
+        const std::optional<double> excess = maps[k].ExcessAt(x, y);
         if (!excess || *excess <= 0.) continue;
         Color color = CategoryColor(static_cast<int>(k));
         color.alpha = std::min(1., kContrast * *excess);
@@ -196,7 +186,6 @@ Picture PaintOverlaid(const std::vector<const MapPainter*>& maps) {
 void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
                     const PixelFrame& frame, const Color& color,
                     Picture* const picture) {
-  if (positions.empty()) return;
   std::vector<Eigen::Vector2d> pixels;
   for (const Eigen::Vector2d& position : positions) {
     if (IsDrawable(position)) pixels.push_back(frame.ToPixels(position));
@@ -204,8 +193,8 @@ void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
   if (pixels.empty()) return;
   const double scale = StrokeScale(*picture);
   picture->DrawPolyline(pixels, 1.2 * scale, color);
-  picture->DrawCircle(pixels.front(), 3. * scale, Color{1., 1., 1.}, color);
-  picture->DrawCircle(pixels.back(), 3. * scale, color, Color{1., 1., 1.});
+  picture->DrawCircle(pixels.front(), 3. * scale, kWhite, color);
+  picture->DrawCircle(pixels.back(), 3. * scale, color, kWhite);
 }
 
 void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
@@ -218,13 +207,6 @@ void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
   picture->DrawPolyline({a, b}, 1.4 * scale, color);
   picture->DrawCircle(a, 2. * scale, color, color);
   picture->DrawCircle(b, 2. * scale, color, color);
-}
-
-void DrawLabel(const Eigen::Vector2d& position, const std::string& text,
-               const PixelFrame& frame, Picture* const picture) {
-  if (!IsDrawable(position)) return;
-  picture->DrawText(frame.ToPixels(position), text, 9. * StrokeScale(*picture),
-                    kInk, Picture::Anchor::kCentre);
 }
 
 void DrawMetricGrid(const PixelFrame& frame, Picture* const picture) {

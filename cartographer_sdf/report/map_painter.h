@@ -10,7 +10,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
@@ -36,18 +35,15 @@ class MapPainter {
   void AddSubmap(const OccupancyGrid& grid, const Rigid2& T_map_submap);
 
   [[nodiscard]] const PixelFrame& frame() const { return frame_; }
-  // Of what was added so far.
+  // Of what was added so far; of nothing.
   [[nodiscard]] Picture Paint() const;
+  [[nodiscard]] Picture UnobservedPicture() const;
   // How far the mean probability of a pixel is above (a wall) or below (free)
   // 1/2; none where nothing is known.
   [[nodiscard]] std::optional<double> ExcessAt(int x, int y) const;
-  [[nodiscard]] int width() const { return width_; }
-  [[nodiscard]] int height() const { return height_; }
 
  private:
   PixelFrame frame_;
-  int width_ = 1;
-  int height_ = 1;
   // Per pixel, of the samples of known cells: their number, and the sum of how
   // far their probability is above or below 1/2.
   Eigen::ArrayXXf num_samples_;
@@ -60,7 +56,7 @@ class MapPainter {
 // submaps of its own: the walls of each in the colour of its place in the list
 // (CategoryColor), what is free in any of them white, and red where a wall of
 // one stands in the free space of another.
-[[nodiscard]] Picture PaintOverlaid(const std::vector<const MapPainter*>& maps);
+[[nodiscard]] Picture PaintOverlaid(const std::vector<MapPainter>& maps);
 
 // To be drawn upon a map's picture. Positions are in the frame of `frame` [m];
 // those off this world are left out.
@@ -70,8 +66,6 @@ void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
 // A dot at both ends.
 void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
               const PixelFrame& frame, const Color& color, Picture* picture);
-void DrawLabel(const Eigen::Vector2d& position, const std::string& text,
-               const PixelFrame& frame, Picture* picture);
 // Fine lines every so many metres, with their coordinates at the border.
 void DrawMetricGrid(const PixelFrame& frame, Picture* picture);
 // At the lower left, of a round number of metres.

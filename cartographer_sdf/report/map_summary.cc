@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -14,7 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "cartographer_sdf/report/text_table.h"
+#include "cartographer_sdf/report/text.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -45,68 +44,54 @@ std::string FormatDuration(const double seconds) {
   return absl::StrFormat("%.1f days", seconds / 86400.);
 }
 
-std::string DescribeGrids(const MapState& map) {
-  int num_tsdf = 0;
-  int num_probability = 0;
-  std::set<double> resolutions;
-  for (const auto& [id, submap] : map.submaps) {
-    if ((submap.geometry.size <= 0).any()) continue;
-    ++(submap.is_tsdf ? num_tsdf : num_probability);
-    resolutions.insert(submap.geometry.resolution);
-  }
-  std::vector<std::string> kinds;
-  if (num_probability > 0) {
-    kinds.push_back(absl::StrCat(num_probability, " probability"));
-  }
-  if (num_tsdf > 0) kinds.push_back(absl::StrCat(num_tsdf, " TSDF"));
-  if (kinds.empty()) return "none";
-  std::string text =
-      absl::StrFormat("%s, cells of %.4g m", absl::StrJoin(kinds, " and "),
-                      *resolutions.begin());
-  if (resolutions.size() > 1) {
-    absl::StrAppendFormat(&text, " to %.4g m", *resolutions.rbegin());
-  }
-  return text;
-}
-
 std::string DescribeConstraints(const MapState& map) {
-  int num_intra = 0;
-  int num_inter = 0;
-  int num_between_trajectories = 0;
+  int num_intra = 0, num_inter = 0, num_between_trajectories = 0;
   for (const Constraint& constraint : map.pose_graph.constraints) {
-    const bool is_intra = constraint.tag == Constraint::Tag::kIntraSubmap;
-    ++(is_intra ? num_intra : num_inter);
-    if (constraint.submap.trajectory != constraint.node.trajectory) {
-      ++num_between_trajectories;
-    }
+    ++(constraint.tag == Constraint::Tag::kIntraSubmap ? num_intra : num_inter);
+    num_between_trajectories +=
+        constraint.submap.trajectory != constraint.node.trajectory;
   }
   return absl::StrFormat(
       "%d intra-submap, %d inter-submap (%d between trajectories)", num_intra,
       num_inter, num_between_trajectories);
 }
 
-std::string DescribeSubmaps(const MapState& map) {
-  int num_finished = 0;
+// Lines about all submaps and their grids, by what they are about.
+Rows DescribeSubmaps(const MapState& map) {
+  int num_finished = 0, num_tsdf = 0, num_probability = 0;
+  double area = 0.;
+  std::set<double> resolutions;
   for (const auto& [id, submap] : map.submaps) {
-    if (submap.finished) ++num_finished;
+    const double resolution = submap.geometry.resolution;
+    num_finished += submap.finished;
+    area += submap.num_known_cells * resolution * resolution;
+    if ((submap.geometry.size <= 0).any()) continue;
+    ++(submap.is_tsdf ? num_tsdf : num_probability);
+    resolutions.insert(resolution);
   }
-  std::string text =
+  std::string submaps =
       absl::StrFormat("%d (%d finished)", map.submaps.size(), num_finished);
   const size_t num_poses = map.pose_graph.submap_poses.size();
   if (num_poses > map.submaps.size()) {
-    absl::StrAppendFormat(&text, ", and %d poses without a submap",
+    absl::StrAppendFormat(&submaps, ", and %d poses without a submap",
                           num_poses - map.submaps.size());
   }
-  return text;
-}
-
-double KnownArea(const MapState& map) {
-  double area = 0.;
-  for (const auto& [id, submap] : map.submaps) {
-    area += submap.num_known_cells * submap.geometry.resolution *
-            submap.geometry.resolution;
+  std::vector<std::string> kinds;
+  if (num_probability > 0) {
+    kinds.push_back(absl::StrCat(num_probability, " probability"));
   }
-  return area;
+  if (num_tsdf > 0) kinds.push_back(absl::StrCat(num_tsdf, " TSDF"));
+  std::string grids = kinds.empty() ? "none" : absl::StrJoin(kinds, " and ");
+  if (!resolutions.empty()) {
+    absl::StrAppendFormat(&grids, ", cells of %.4g m", *resolutions.begin());
+  }
+  if (resolutions.size() > 1) {
+    absl::StrAppendFormat(&grids, " to %.4g m", *resolutions.rbegin());
+  }
+  return {
+      {"submaps", submaps},
+      {"grids", grids},
+      {"observed area", absl::StrFormat("%.1f m2, submap by submap", area)}};
 }
 
 std::string DescribeTrajectories(const MapState& map) {
@@ -178,20 +163,19 @@ std::string DescribeMap(const std::string& name, const MapState& map) {
   for (const auto& [kind, count] : map.num_records) {
     records.push_back({kind, absl::StrCat(count)});
   }
+  Rows lines = {{"format version", absl::StrCat(map.format_version)},
+                {"trajectories", absl::StrCat(map.trajectories.size())}};
+  for (std::vector<std::string>& line : DescribeSubmaps(map)) {
+    lines.push_back(std::move(line));
+  }
+  lines.push_back({"nodes", absl::StrCat(map.pose_graph.nodes.size())});
+  lines.push_back({"constraints", DescribeConstraints(map)});
+  lines.push_back(
+      {"landmarks", absl::StrCat(map.pose_graph.landmark_poses.size())});
   std::string text = absl::StrCat(name, "\n");
-  const auto append = [&text](const std::string& key,
-                              const std::string& value) {
-    absl::StrAppendFormat(&text, "  %-16s%s\n", key, value);
-  };
-  append("format version", absl::StrCat(map.format_version));
-  append("trajectories", absl::StrCat(map.trajectories.size()));
-  append("submaps", DescribeSubmaps(map));
-  append("grids", DescribeGrids(map));
-  append("observed area",
-         absl::StrFormat("%.1f m2, submap by submap", KnownArea(map)));
-  append("nodes", absl::StrCat(map.pose_graph.nodes.size()));
-  append("constraints", DescribeConstraints(map));
-  append("landmarks", absl::StrCat(map.pose_graph.landmark_poses.size()));
+  for (const std::vector<std::string>& line : lines) {
+    absl::StrAppendFormat(&text, "  %-16s%s\n", line[0], line[1]);
+  }
   absl::StrAppend(&text, "\nTrajectories\n", DescribeTrajectories(map),
                   "\nRecords\n", FormatTable(records));
   return text;

@@ -11,13 +11,14 @@
 #include <cstdint>
 #include <cstring>
 
-#include "cartographer_sdf/file/whole_file.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
 constexpr int kMaxSize = 16384;
+// Corridors of maps reach hundreds of metres; more is no pair of submaps.
+constexpr double kMaxExtentMeters = 2000.;
 
 double Quantized(const double value) {
   return std::floor(255. * std::clamp(value, 0., 1.) + 0.5);
@@ -30,21 +31,12 @@ cairo_status_t AppendBytes(void* const output, const unsigned char* const bytes,
   return CAIRO_STATUS_SUCCESS;
 }
 
+void SetColor(cairo_t* const context, const Color& color) {
+  cairo_set_source_rgba(context, color.red, color.green, color.blue,
+                        color.alpha);
+}
+
 }  // namespace
-
-struct Picture::Canvas {
-  cairo_surface_t* surface = nullptr;
-  cairo_t* context = nullptr;
-
-  ~Canvas() {
-    cairo_destroy(context);
-    cairo_surface_destroy(surface);
-  }
-  void SetColor(const Color& color) const {
-    cairo_set_source_rgba(context, color.red, color.green, color.blue,
-                          color.alpha);
-  }
-};
 
 Color Mix(const Color& a, const Color& b, const double fraction_of_b) {
   const auto mix = [fraction_of_b](const double x, const double y) {
@@ -66,40 +58,48 @@ Color CategoryColor(const int category) {
   return kColors[static_cast<size_t>(((category % n) + n) % n)];
 }
 
-Picture::Picture(const int width, const int height, const Color& background)
-    : canvas_(std::make_unique<Canvas>()) {
-  CHECK(width >= 1 && width <= kMaxSize) << width;
-  CHECK(height >= 1 && height <= kMaxSize) << height;
-  canvas_->surface =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
-  canvas_->context = cairo_create(canvas_->surface);
-  CHECK_EQ(cairo_status(canvas_->context), CAIRO_STATUS_SUCCESS);
-  canvas_->SetColor(background);
-  cairo_paint(canvas_->context);
-  cairo_set_line_join(canvas_->context, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(canvas_->context, CAIRO_LINE_CAP_ROUND);
-  cairo_select_font_face(canvas_->context, "sans-serif",
-                         CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+double RoundStep(const double step) {
+  CHECK(std::isfinite(step) && step > 0.) << step;
+  const double magnitude = std::pow(10., std::floor(std::log10(step)));
+  for (const double factor : {1., 2., 5.}) {
+    // Forgives the rounding of the logarithm.
+    if (factor * magnitude >= step * (1. - 1e-9)) return factor * magnitude;
+  }
+  return 10. * magnitude;
 }
 
-Picture::Picture(Picture&&) noexcept = default;
-Picture& Picture::operator=(Picture&&) noexcept = default;
-Picture::~Picture() = default;
+Picture::Picture(const int width, const int height, const Color& background)
+    : context_(nullptr, &cairo_destroy) {
+  CHECK(width >= 1 && width <= kMaxSize) << width;
+  CHECK(height >= 1 && height <= kMaxSize) << height;
+  cairo_surface_t* const surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
+  context_.reset(cairo_create(surface));
+  cairo_surface_destroy(surface);  // the context has it
+  CHECK_EQ(cairo_status(context_.get()), CAIRO_STATUS_SUCCESS);
+  SetColor(context_.get(), background);
+  cairo_paint(context_.get());
+  cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(context_.get(), CAIRO_LINE_CAP_ROUND);
+  cairo_select_font_face(context_.get(), "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         CAIRO_FONT_WEIGHT_NORMAL);
+}
 
 int Picture::width() const {
-  return cairo_image_surface_get_width(canvas_->surface);
+  return cairo_image_surface_get_width(cairo_get_target(context_.get()));
 }
 
 int Picture::height() const {
-  return cairo_image_surface_get_height(canvas_->surface);
+  return cairo_image_surface_get_height(cairo_get_target(context_.get()));
 }
 
 void Picture::BlendPixel(const int x, const int y, const Color& color) {
   if (x < 0 || y < 0 || x >= width() || y >= height()) return;
-  cairo_surface_flush(canvas_->surface);
-  unsigned char* const address =
-      cairo_image_surface_get_data(canvas_->surface) +
-      y * cairo_image_surface_get_stride(canvas_->surface) + 4 * x;
+  cairo_surface_t* const surface = cairo_get_target(context_.get());
+  cairo_surface_flush(surface);
+  unsigned char* const address = cairo_image_surface_get_data(surface) +
+                                 y * cairo_image_surface_get_stride(surface) +
+                                 4 * x;
   uint32_t pixel;
   std::memcpy(&pixel, address, sizeof(pixel));
   const Color old{((pixel >> 16) & 255) / 255., ((pixel >> 8) & 255) / 255.,
@@ -109,67 +109,88 @@ void Picture::BlendPixel(const int x, const int y, const Color& color) {
           static_cast<uint32_t>(Quantized(mixed.green)) << 8 |
           static_cast<uint32_t>(Quantized(mixed.blue));
   std::memcpy(address, &pixel, sizeof(pixel));
-  cairo_surface_mark_dirty_rectangle(canvas_->surface, x, y, 1, 1);
+  cairo_surface_mark_dirty_rectangle(surface, x, y, 1, 1);
+}
+
+void Picture::BlendPixels(
+    const std::function<std::optional<Color>(int x, int y)>& color_of) {
+  for (int y = 0; y < height(); ++y) {
+    for (int x = 0; x < width(); ++x) {
+      if (const std::optional<Color> color = color_of(x, y)) {
+        BlendPixel(x, y, *color);
+      }
+    }
+  }
 }
 
 void Picture::DrawPolyline(const std::vector<Eigen::Vector2d>& positions,
                            const double width, const Color& color) {
-  cairo_new_path(canvas_->context);
+  cairo_new_path(context_.get());
   for (const Eigen::Vector2d& position : positions) {
-    cairo_line_to(canvas_->context, position.x(), position.y());
+    cairo_line_to(context_.get(), position.x(), position.y());
   }
-  canvas_->SetColor(color);
-  cairo_set_line_width(canvas_->context, width);
-  cairo_stroke(canvas_->context);
+  SetColor(context_.get(), color);
+  cairo_set_line_width(context_.get(), width);
+  cairo_stroke(context_.get());
 }
 
 void Picture::DrawRectangle(const Eigen::Vector2d& top_left,
                             const Eigen::Vector2d& size, const Color& fill) {
-  canvas_->SetColor(fill);
-  cairo_rectangle(canvas_->context, top_left.x(), top_left.y(), size.x(),
+  SetColor(context_.get(), fill);
+  cairo_rectangle(context_.get(), top_left.x(), top_left.y(), size.x(),
                   size.y());
-  cairo_fill(canvas_->context);
+  cairo_fill(context_.get());
 }
 
 void Picture::DrawCircle(const Eigen::Vector2d& centre, const double radius,
                          const Color& fill, const Color& outline) {
-  cairo_new_path(canvas_->context);
-  cairo_arc(canvas_->context, centre.x(), centre.y(), radius, 0., 2. * M_PI);
-  canvas_->SetColor(fill);
-  cairo_fill_preserve(canvas_->context);
-  canvas_->SetColor(outline);
-  cairo_set_line_width(canvas_->context, 1.);
-  cairo_stroke(canvas_->context);
+  cairo_new_path(context_.get());
+  cairo_arc(context_.get(), centre.x(), centre.y(), radius, 0., 2. * M_PI);
+  SetColor(context_.get(), fill);
+  cairo_fill_preserve(context_.get());
+  SetColor(context_.get(), outline);
+  cairo_set_line_width(context_.get(), 1.);
+  cairo_stroke(context_.get());
 }
 
 void Picture::DrawText(const Eigen::Vector2d& position, const std::string& text,
                        const double size, const Color& color,
                        const Anchor anchor) {
-  cairo_set_font_size(canvas_->context, size);
+  cairo_set_font_size(context_.get(), size);
   cairo_text_extents_t extents;
-  cairo_text_extents(canvas_->context, text.c_str(), &extents);
-  const double shift = anchor == Anchor::kLeft     ? 0.
-                       : anchor == Anchor::kCentre ? 0.5 * extents.x_advance
-                                                   : extents.x_advance;
-  cairo_move_to(canvas_->context, position.x() - shift, position.y());
-  cairo_text_path(canvas_->context, text.c_str());
-  canvas_->SetColor(Color{1., 1., 1., 0.8});
-  cairo_set_line_width(canvas_->context, 3.);
-  cairo_stroke_preserve(canvas_->context);
-  canvas_->SetColor(color);
-  cairo_fill(canvas_->context);
+  cairo_text_extents(context_.get(), text.c_str(), &extents);
+  const double shift = anchor == Anchor::kCentre ? 0.5 * extents.x_advance : 0.;
+  cairo_move_to(context_.get(), position.x() - shift, position.y());
+  cairo_text_path(context_.get(), text.c_str());
+  SetColor(context_.get(), Color{1., 1., 1., 0.8});
+  cairo_set_line_width(context_.get(), 3.);
+  cairo_stroke_preserve(context_.get());
+  SetColor(context_.get(), color);
+  cairo_fill(context_.get());
 }
 
 std::string Picture::EncodePng() const {
   std::string png;
-  CHECK_EQ(
-      cairo_surface_write_to_png_stream(canvas_->surface, AppendBytes, &png),
-      CAIRO_STATUS_SUCCESS);
+  CHECK_EQ(cairo_surface_write_to_png_stream(cairo_get_target(context_.get()),
+                                             AppendBytes, &png),
+           CAIRO_STATUS_SUCCESS);
   return png;
 }
 
-absl::Status Picture::WritePng(const std::string& path) const {
-  return WriteWholeFile(path, EncodePng());
+Sheet MakeSheet(const Eigen::AlignedBox2d& bounds, const int max_pixels,
+                const Color& background) {
+  CHECK_GE(max_pixels, 1);
+  CHECK(!bounds.isEmpty());
+  const Eigen::Vector2d extent =
+      bounds.sizes().cwiseMax(1e-3).cwiseMin(kMaxExtentMeters);
+  const double pixels_per_meter = max_pixels / extent.maxCoeff();
+  const auto num_pixels = [&](const double length) {
+    return std::clamp(static_cast<int>(std::lround(length * pixels_per_meter)),
+                      1, max_pixels);
+  };
+  return Sheet{
+      Picture(num_pixels(extent.x()), num_pixels(extent.y()), background),
+      PixelFrame{pixels_per_meter, {bounds.min().x(), bounds.max().y()}}};
 }
 
 }  // namespace cartographer_sdf

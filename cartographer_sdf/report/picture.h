@@ -7,13 +7,14 @@
 #ifndef CARTOGRAPHER_SDF_REPORT_PICTURE_H_
 #define CARTOGRAPHER_SDF_REPORT_PICTURE_H_
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
-#include "cartographer_sdf/geometry/rigid2.h"
+struct _cairo;
 
 namespace cartographer_sdf {
 
@@ -32,6 +33,10 @@ constexpr Color kBlack{0., 0., 0.};
 
 // Well distinguishable colours, also by the colour-blind; they repeat.
 [[nodiscard]] Color CategoryColor(int category);
+
+// For ticks and scale bars: the least 1, 2 or 5 times a power of ten that is
+// not less than `step` > 0.
+[[nodiscard]] double RoundStep(double step);
 
 // Where the points of a frame lie in a picture: its x axis to the right, its y
 // axis up.
@@ -52,19 +57,19 @@ struct PixelFrame {
 
 class Picture {
  public:
-  enum class Anchor { kLeft, kCentre, kRight };
+  enum class Anchor { kLeft, kCentre };
 
   // Sizes are at least 1 and at most 16384.
   Picture(int width, int height, const Color& background);
-  Picture(Picture&&) noexcept;
-  Picture& operator=(Picture&&) noexcept;
-  ~Picture();
 
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
 
   // Outside of the picture nothing happens.
   void BlendPixel(int x, int y, const Color& color);
+  // Blends each pixel with its colour; those without one stay.
+  void BlendPixels(
+      const std::function<std::optional<Color>(int x, int y)>& color_of);
 
   // Positions are in pixels.
   void DrawPolyline(const std::vector<Eigen::Vector2d>& positions, double width,
@@ -79,12 +84,20 @@ class Picture {
                 double size, const Color& color, Anchor anchor);
 
   [[nodiscard]] std::string EncodePng() const;
-  [[nodiscard]] absl::Status WritePng(const std::string& path) const;
 
  private:
-  struct Canvas;
-  std::unique_ptr<Canvas> canvas_;
+  std::unique_ptr<_cairo, void (*)(_cairo*)> context_;
 };
+
+// A picture of a part of a plane.
+struct Sheet {
+  Picture picture;
+  PixelFrame frame;
+};
+
+// Of `bounds` [m], with the longer side at `max_pixels`.
+[[nodiscard]] Sheet MakeSheet(const Eigen::AlignedBox2d& bounds, int max_pixels,
+                              const Color& background);
 
 }  // namespace cartographer_sdf
 

@@ -18,7 +18,20 @@ struct ReportOptions {
 };
 
 // A sentence that begins with the offending option, or nothing.
-[[nodiscard]] std::string Validate(const ReportOptions& options);
+[[nodiscard]] inline std::string Validate(const ReportOptions& options) {
+  // Above it, pictures of 32 bit per pixel exceed what browsers show well.
+  constexpr int kMaxPixels = 8192;
+  const auto is_size = [](const int pixels) {
+    return pixels >= 16 && pixels <= kMaxPixels;
+  };
+  return !is_size(options.map_picture_pixels)
+             ? "map_picture_pixels must be from 16 to 8192"
+         : !is_size(options.closure_picture_pixels)
+             ? "closure_picture_pixels must be from 16 to 8192"
+         : options.max_closure_pictures < 0
+             ? "max_closure_pictures must not be negative"
+             : "";
+}
 
 // What every report is told beside its content.
 struct ReportRequest {

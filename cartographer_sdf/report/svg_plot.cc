@@ -6,13 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/report/markup.h"
+#include "absl/strings/str_join.h"
 #include "cartographer_sdf/report/picture.h"
-#include "cartographer_sdf/report/round_step.h"
+#include "cartographer_sdf/report/text.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -34,56 +35,37 @@ struct Range {
   double end;
 };
 
-class RangeFinder {
- public:
-  void Add(const double value) {
-    if (!IsPlottable(value)) return;
-    begin_ = std::min(begin_, value);
-    end_ = std::max(end_, value);
+// That of the axis, or else of all values that can be plotted; never empty.
+Range RangeOf(const PlotAxis& axis, const std::vector<double>& values) {
+  Range range{std::numeric_limits<double>::infinity(),
+              -std::numeric_limits<double>::infinity()};
+  for (const double value : values) {
+    if (!IsPlottable(value)) continue;
+    range = {std::min(range.begin, value), std::max(range.end, value)};
   }
-  // The range of the axis or else of what was added; never empty.
-  [[nodiscard]] Range Get(const PlotAxis& axis) const {
-    return axis.range.has_value()
-               ? NotEmpty({axis.range->first, axis.range->second})
-               : Get();
+  if (axis.range) range = {axis.range->first, axis.range->second};
+  if (!(range.begin <= range.end)) range = {0., 1.};
+  const double least =
+      1e-9 * std::max({1., std::abs(range.begin), std::abs(range.end)});
+  if (range.end - range.begin < least) {
+    range.end = range.begin + std::max(1., least);
   }
-  [[nodiscard]] Range Get() const { return NotEmpty({begin_, end_}); }
+  return range;
+}
 
- private:
-  static Range NotEmpty(Range range) {
-    if (!(range.begin <= range.end)) range = {0., 1.};
-    const double least =
-        1e-9 * std::max({1., std::abs(range.begin), std::abs(range.end)});
-    if (range.end - range.begin < least) {
-      range.end = range.begin + std::max(1., least);
-    }
-    return range;
-  }
+// The frame of a plot.
+struct Axes {
+  Range x;
+  Range y;
 
-  double begin_ = std::numeric_limits<double>::infinity();
-  double end_ = -std::numeric_limits<double>::infinity();
-};
-
-// The frame of a plot: what both kinds share.
-class Axes {
- public:
-  Axes(const Range& x, const Range& y) : x_(x), y_(y) {}
-
-  [[nodiscard]] double PixelX(const double x) const {
-    const double fraction = (x - x_.begin) / (x_.end - x_.begin);
+  [[nodiscard]] double PixelX(const double value) const {
+    const double fraction = (value - x.begin) / (x.end - x.begin);
     return kLeft + fraction * (kWidth - kLeft - kRight);
   }
-  [[nodiscard]] double PixelY(const double y) const {
-    const double fraction = (y - y_.begin) / (y_.end - y_.begin);
+  [[nodiscard]] double PixelY(const double value) const {
+    const double fraction = (value - y.begin) / (y.end - y.begin);
     return kHeight - kBottom - fraction * (kHeight - kTop - kBottom);
   }
-  [[nodiscard]] std::string Render(const std::string& title,
-                                   const std::string& x_label,
-                                   const std::string& y_label) const;
-
- private:
-  const Range x_;
-  const Range y_;
 };
 
 std::string Text(const double x, const double y, const char* const anchor,
@@ -114,25 +96,25 @@ std::vector<double> Ticks(const Range& range) {
   return ticks;
 }
 
-std::string Axes::Render(const std::string& title, const std::string& x_label,
-                         const std::string& y_label) const {
+std::string RenderAxes(const Axes& axes, const LinePlot& plot) {
   const double bottom = kHeight - kBottom;
   const double right = kWidth - kRight;
-  std::string svg = Text(kLeft, 16., "start", title, "font-weight=\"bold\"");
-  for (const double tick : Ticks(x_)) {
-    svg += Line(PixelX(tick), bottom, PixelX(tick), bottom + 4., 0.8);
-    svg += Text(PixelX(tick), bottom + 16., "middle",
+  std::string svg =
+      Text(kLeft, 16., "start", plot.title, "font-weight=\"bold\"");
+  for (const double tick : Ticks(axes.x)) {
+    svg += Line(axes.PixelX(tick), bottom, axes.PixelX(tick), bottom + 4., 0.8);
+    svg += Text(axes.PixelX(tick), bottom + 16., "middle",
                 absl::StrFormat("%.6g", tick));
   }
-  for (const double tick : Ticks(y_)) {
-    svg += Line(kLeft, PixelY(tick), right, PixelY(tick), 0.15);
-    svg += Text(kLeft - 6., PixelY(tick) + 4., "end",
+  for (const double tick : Ticks(axes.y)) {
+    svg += Line(kLeft, axes.PixelY(tick), right, axes.PixelY(tick), 0.15);
+    svg += Text(kLeft - 6., axes.PixelY(tick) + 4., "end",
                 absl::StrFormat("%.6g", tick));
   }
   svg += Line(kLeft, bottom, right, bottom, 0.8);
   svg += Line(kLeft, kTop, kLeft, bottom, 0.8);
-  svg += Text(0.5 * (kLeft + right), kHeight - 8., "middle", x_label);
-  svg += Text(0., 0., "middle", y_label,
+  svg += Text(0.5 * (kLeft + right), kHeight - 8., "middle", plot.x.label);
+  svg += Text(0., 0., "middle", plot.y.label,
               absl::StrFormat("transform=\"translate(13 %.1f) rotate(-90)\"",
                               0.5 * (kTop + bottom)));
   return svg;
@@ -148,7 +130,7 @@ std::string ColorName(const size_t series) {
 }
 
 std::string Legend(const std::vector<std::string>& names,
-                   const LegendCorner corner = LegendCorner::kTopRight) {
+                   const LegendCorner corner) {
   constexpr double kLine = 15.;
   const bool is_right = corner == LegendCorner::kTopRight;
   const double first = is_right
@@ -169,17 +151,44 @@ std::string Legend(const std::vector<std::string>& names,
   return svg;
 }
 
-// The nested <svg> clips what lies outside of given ranges.
-std::string Document(const std::string& title, const std::string& axes,
-                     const std::string& content, const std::string& legend) {
+// The nested <svg> clips what lies outside of given ranges. Filled series are
+// closed.
+std::string Render(const LinePlot& plot, const bool is_filled) {
+  std::vector<double> xs, ys;
+  for (const LineSeries& series : plot.series) {
+    for (const Eigen::Vector2d& point : series.points) {
+      if (!IsPlottable(point.x()) || !IsPlottable(point.y())) continue;
+      xs.push_back(point.x());
+      ys.push_back(point.y());
+    }
+  }
+  const Axes axes{RangeOf(plot.x, xs), RangeOf(plot.y, ys)};
+  std::string content;
+  std::vector<std::string> names;
+  for (const LineSeries& series : plot.series) {
+    std::vector<std::string> points;
+    for (const Eigen::Vector2d& point : series.points) {
+      if (!IsPlottable(point.x()) || !IsPlottable(point.y())) continue;
+      points.push_back(absl::StrFormat("%.2f,%.2f", axes.PixelX(point.x()),
+                                       axes.PixelY(point.y())));
+    }
+    const std::string color = ColorName(names.size());
+    absl::StrAppend(&content, is_filled ? "<polygon" : "<polyline",
+                    " points=\"", absl::StrJoin(points, " "), "\" fill=\"",
+                    is_filled ? color + "\" fill-opacity=\"0.3" : "none",
+                    "\" stroke=\"", color,
+                    is_filled ? "" : "\" stroke-width=\"1.8", "\"/>\n");
+    names.push_back(series.name);
+  }
   return absl::StrFormat(
       "<svg class=\"plot\" role=\"img\" aria-label=\"%s\" "
       "viewBox=\"0 0 %g %g\" font-size=\"11\" fill=\"currentColor\">\n%s"
       "<svg x=\"%g\" y=\"%g\" width=\"%g\" height=\"%g\" "
       "viewBox=\"%g %g %g %g\">\n%s</svg>\n%s</svg>\n",
-      EscapeMarkup(title), kWidth, kHeight, axes, kLeft, kTop,
-      kWidth - kLeft - kRight, kHeight - kTop - kBottom, kLeft, kTop,
-      kWidth - kLeft - kRight, kHeight - kTop - kBottom, content, legend);
+      EscapeMarkup(plot.title), kWidth, kHeight, RenderAxes(axes, plot), kLeft,
+      kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom, kLeft, kTop,
+      kWidth - kLeft - kRight, kHeight - kTop - kBottom, content,
+      Legend(names, plot.legend));
 }
 
 }  // namespace
@@ -199,34 +208,7 @@ std::vector<int> CountInBins(const std::vector<double>& values,
 }
 
 std::string RenderLinePlot(const LinePlot& plot) {
-  RangeFinder x_range;
-  RangeFinder y_range;
-  for (const LineSeries& series : plot.series) {
-    for (const Eigen::Vector2d& point : series.points) {
-      if (!IsPlottable(point.x()) || !IsPlottable(point.y())) continue;
-      x_range.Add(point.x());
-      y_range.Add(point.y());
-    }
-  }
-  const Axes axes(x_range.Get(plot.x), y_range.Get(plot.y));
-  std::string content;
-  std::vector<std::string> names;
-  for (const LineSeries& series : plot.series) {
-    std::string points;
-    for (const Eigen::Vector2d& point : series.points) {
-      if (!IsPlottable(point.x()) || !IsPlottable(point.y())) continue;
-      absl::StrAppendFormat(&points, "%.2f,%.2f ", axes.PixelX(point.x()),
-                            axes.PixelY(point.y()));
-    }
-    absl::StrAppendFormat(&content,
-                          "<polyline points=\"%s\" fill=\"none\" "
-                          "stroke=\"%s\" stroke-width=\"1.8\"/>\n",
-                          points, ColorName(names.size()));
-    names.push_back(series.name);
-  }
-  return Document(plot.title,
-                  axes.Render(plot.title, plot.x.label, plot.y.label), content,
-                  Legend(names, plot.legend));
+  return Render(plot, /*is_filled=*/false);
 }
 
 std::string StandaloneSvg(const std::string& plot) {
@@ -243,41 +225,27 @@ std::string StandaloneSvg(const std::string& plot) {
 }
 
 std::string RenderHistogram(const HistogramPlot& plot) {
-  RangeFinder x_range;
+  std::vector<double> values;
   for (const HistogramSeries& series : plot.series) {
-    for (const double value : series.values) x_range.Add(value);
+    values.insert(values.end(), series.values.begin(), series.values.end());
   }
-  const Range x = x_range.Get(plot.x);
-  std::vector<std::vector<int>> counts;
-  RangeFinder y_range;
-  y_range.Add(0.);
+  const Range x = RangeOf(plot.x, values);
+  const double width = (x.end - x.begin) / plot.num_bins;
+  LinePlot outlines{
+      plot.title, {plot.x.label, {{x.begin, x.end}}}, {"count", {}}, {}};
   for (const HistogramSeries& series : plot.series) {
-    counts.push_back(CountInBins(series.values, x.begin, x.end, plot.num_bins));
-    for (const int count : counts.back()) y_range.Add(count);
-  }
-  const Axes axes(x, y_range.Get());
-  std::string content;
-  std::vector<std::string> names;
-  for (size_t i = 0; i < counts.size(); ++i) {
-    std::string points =
-        absl::StrFormat("%.2f,%.2f ", axes.PixelX(x.begin), axes.PixelY(0.));
+    LineSeries outline{series.name, {{x.begin, 0.}}};
+    const std::vector<int> counts =
+        CountInBins(series.values, x.begin, x.end, plot.num_bins);
     for (int bin = 0; bin < plot.num_bins; ++bin) {
-      const double y = axes.PixelY(counts[i][static_cast<size_t>(bin)]);
-      const double width = (x.end - x.begin) / plot.num_bins;
-      absl::StrAppendFormat(&points, "%.2f,%.2f %.2f,%.2f ",
-                            axes.PixelX(x.begin + bin * width), y,
-                            axes.PixelX(x.begin + (bin + 1) * width), y);
+      const double count = counts[static_cast<size_t>(bin)];
+      outline.points.emplace_back(x.begin + bin * width, count);
+      outline.points.emplace_back(x.begin + (bin + 1) * width, count);
     }
-    absl::StrAppendFormat(&points, "%.2f,%.2f", axes.PixelX(x.end),
-                          axes.PixelY(0.));
-    absl::StrAppendFormat(&content,
-                          "<polygon points=\"%s\" fill=\"%s\" "
-                          "fill-opacity=\"0.3\" stroke=\"%s\"/>\n",
-                          points, ColorName(i), ColorName(i));
-    names.push_back(plot.series[i].name);
+    outline.points.emplace_back(x.end, 0.);
+    outlines.series.push_back(std::move(outline));
   }
-  return Document(plot.title, axes.Render(plot.title, plot.x.label, "count"),
-                  content, Legend(names));
+  return Render(outlines, /*is_filled=*/true);
 }
 
 }  // namespace cartographer_sdf

@@ -45,9 +45,9 @@ struct HistogramSeries {
 struct HistogramPlot {
   std::string title;
   PlotAxis x;
-  int num_bins = 30;
   // Values below and above the range are counted in the first and last bin.
   std::vector<HistogramSeries> series;
+  int num_bins = 30;
 };
 
 [[nodiscard]] std::string RenderLinePlot(const LinePlot& plot);

@@ -5,17 +5,12 @@
 
 #include <iostream>
 #include <map>
-#include <set>
-#include <string>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/execution/parallel_for.h"
-#include "cartographer_sdf/report/audit_report.h"
-#include "cartographer_sdf/report/audit_table.h"
+#include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
-#include "gflags/gflags.h"
 
 DEFINE_string(constraints, "",
               "CSV file for every inter-submap constraint, with its verdict "
@@ -37,68 +32,35 @@ void PrintSummary(const Audit& audit) {
                                  IsDoubtful(verdict) ? "doubtful: " : "",
                                  AuditVerdictName(verdict));
   }
-  for (const auto& [stage, seconds] : audit.stage_seconds) {
-    std::cout << absl::StrFormat("  %7.2f s %s\n", seconds, stage);
-  }
-  if (!audit.optimizations.empty() && !audit.optimizations.back().converged) {
-    std::cout << "The optimisation did not converge: "
-              << audit.optimizations.back().message << "\n";
-  }
-}
-
-// The map last: it stands for all having gone well.
-absl::Status WriteFiles(const Options& options, const Audit& audit,
-                        StageProgress* const progress) {
-  absl::Status status;
-  if (!FLAGS_constraints.empty()) {
-    status = WriteAuditTable(FLAGS_constraints, audit);
-  }
-  std::optional<PreparedMap> output;
-  const auto read_and_write =
-      [&](const SubmapCallback& on_submap) -> absl::Status {
-    if (FLAGS_output.empty()) {
-      return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
-          .status();
-    }
-    absl::StatusOr<PreparedMap> map =
-        PrepareMap(FLAGS_input, FLAGS_output, audit.pose_graph, {on_submap, {}},
-                   progress->Begin("write"));
-    if (map.ok()) output.emplace(*std::move(map));
-    return map.status();
-  };
-  if (status.ok() && !FLAGS_report.empty()) {
-    status = WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input, audit,
-                              read_and_write);
-  } else if (status.ok() && !FLAGS_output.empty()) {
-    status = read_and_write({});
-  }
-  if (status.ok() && output) status = output->Commit();
-  return status;
+  PrintStages(audit.stage_seconds);
+  PrintConvergence(audit.optimizations);
+  PrintPaths();
 }
 
 absl::Status RunAudit() {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  if (absl::Status status = RequireVerification(options->loop_closing, "audit");
-      !status.ok()) {
-    return status;
-  }
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
-  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
-  if (!frozen.ok()) return frozen.status();
-
+  const absl::StatusOr<MapTask> task = MapTaskOfFlags("audit");
+  if (!task.ok()) return task.status();
+  const Options& options = task->options;
   StageProgress progress;
   const absl::StatusOr<Audit> audit =
-      AuditMap(options->loop_closing, options->audit, FLAGS_input, *frozen,
-               MakeExecutor(*num_threads), progress.Callback());
+      AuditMap(options.loop_closing, options.audit, FLAGS_input,
+               task->frozen_trajectories, task->executor, progress.Callback());
   if (!audit.ok()) return audit.status();
-  const absl::Status status = WriteFiles(*options, *audit, &progress);
-  if (!status.ok()) return status;
-  PrintSummary(*audit);
-  if (!FLAGS_output.empty()) std::cout << FLAGS_output << "\n";
-  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
-  return absl::OkStatus();
+  absl::Status status;
+  if (!FLAGS_constraints.empty()) {
+    status = WriteAuditTable(FLAGS_constraints, *audit);
+  }
+  if (status.ok()) {
+    status = WriteMapAndReport(
+        audit->pose_graph,
+        [&](const SubmapsReader& read_submaps) {
+          return WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input,
+                                  *audit, read_submaps);
+        },
+        &progress);
+  }
+  if (status.ok()) PrintSummary(*audit);
+  return status;
 }
 
 }  // namespace

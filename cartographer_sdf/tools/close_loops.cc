@@ -4,20 +4,14 @@
 #include "cartographer_sdf/apps/close_loops.h"
 
 #include <iostream>
-#include <map>
-#include <optional>
-#include <set>
-#include <utility>
+#include <vector>
 
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/execution/parallel_for.h"
-#include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/report/close_loops_report.h"
 #include "cartographer_sdf/report/match_table.h"
+#include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
-#include "gflags/gflags.h"
 
 DEFINE_string(closures, "",
               "CSV file for the closures that went into the graph, with their "
@@ -38,16 +32,10 @@ absl::Status WriteClosures(const std::string& path,
 }
 
 void PrintSummary(const LoopClosingResult& result) {
-  std::map<ClosureStatus, int> statuses;
-  for (const Closure& closure : result.closed.closures)
-    ++statuses[closure.status];
   std::cout << absl::StrFormat(
       "%d submaps, %d matches accepted by verification\n", result.num_places,
       result.closed.closures.size());
-  for (const auto& [status, count] : statuses) {
-    std::cout << absl::StrFormat("  %5d %s\n", count,
-                                 ClosureStatusName(status));
-  }
+  PrintStatuses("", result.closed.closures);
   if (!result.closed.torn_submaps.empty()) {
     std::cout << absl::StrFormat("%d submaps are torn inside:\n",
                                  result.closed.torn_submaps.size());
@@ -58,65 +46,34 @@ void PrintSummary(const LoopClosingResult& result) {
   if (result.closed.closures.empty()) {
     std::cout << "No loop closure was found; the map is as it was.\n";
   }
-  for (const auto& [stage, seconds] : result.stage_seconds) {
-    std::cout << absl::StrFormat("  %7.2f s %s\n", seconds, stage);
-  }
-  if (!result.closed.optimizations.empty() &&
-      !result.closed.optimizations.back().converged) {
-    std::cout << "The optimisation did not converge: "
-              << result.closed.optimizations.back().message << "\n";
-  }
-}
-
-// The map last: it stands for all having gone well.
-absl::Status WriteFiles(const Options& options, const LoopClosingResult& result,
-                        StageProgress* const progress) {
-  absl::Status status;
-  if (!FLAGS_closures.empty()) {
-    status = WriteClosures(FLAGS_closures, result.closed.closures);
-  }
-  std::optional<PreparedMap> output;
-  const auto write = [&](const SubmapCallback& on_submap) -> absl::Status {
-    absl::StatusOr<PreparedMap> map =
-        PrepareMap(FLAGS_input, FLAGS_output, result.closed.pose_graph,
-                   {on_submap, {}}, progress->Begin("write"));
-    if (map.ok()) output.emplace(*std::move(map));
-    return map.status();
-  };
-  if (status.ok()) {
-    // The report shows the grids of the map, which come by as it is written.
-    status = FLAGS_report.empty()
-                 ? write({})
-                 : WriteCloseLoopsReport(ReportRequestOfFlags(options),
-                                         FLAGS_input, result, write);
-  }
-  return status.ok() ? output->Commit() : status;
+  PrintStages(result.stage_seconds);
+  PrintConvergence(result.closed.optimizations);
+  PrintPaths();
 }
 
 absl::Status RunCloseLoops() {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  if (absl::Status status =
-          RequireVerification(options->loop_closing, "close_loops");
-      !status.ok()) {
-    return status;
-  }
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
-  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
-  if (!frozen.ok()) return frozen.status();
-
+  const absl::StatusOr<MapTask> task = MapTaskOfFlags("close_loops");
+  if (!task.ok()) return task.status();
   StageProgress progress;
-  const absl::StatusOr<LoopClosingResult> result =
-      CloseLoops(options->loop_closing, FLAGS_input, *frozen,
-                 MakeExecutor(*num_threads), progress.Callback());
+  const absl::StatusOr<LoopClosingResult> result = CloseLoops(
+      task->options.loop_closing, FLAGS_input, task->frozen_trajectories,
+      task->executor, progress.Callback());
   if (!result.ok()) return result.status();
-  const absl::Status status = WriteFiles(*options, *result, &progress);
-  if (!status.ok()) return status;
-  PrintSummary(*result);
-  std::cout << FLAGS_output << "\n";
-  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
-  return absl::OkStatus();
+  absl::Status status;
+  if (!FLAGS_closures.empty()) {
+    status = WriteClosures(FLAGS_closures, result->closed.closures);
+  }
+  if (status.ok()) {
+    status = WriteMapAndReport(
+        result->closed.pose_graph,
+        [&](const SubmapsReader& read_submaps) {
+          return WriteCloseLoopsReport(ReportRequestOfFlags(task->options),
+                                       FLAGS_input, *result, read_submaps);
+        },
+        &progress);
+  }
+  if (status.ok()) PrintSummary(*result);
+  return status;
 }
 
 }  // namespace
@@ -128,8 +85,8 @@ Subcommand CloseLoopsSubcommand() {
       "--input A.pbstream --output B.pbstream [--closures C.csv] "
       "[--report DIR]",
       "Compares every pair of submaps by the shape of their free space, "
-      "without "
-      "a pose prior; verifies what matches; keeps a mutually consistent set; "
+      "without a pose prior; verifies what matches; keeps a mutually "
+      "consistent set; "
       "adds it to the pose graph as inter-submap constraints; optimises; and "
       "writes a map that Cartographer's own tools load. Everything else in the "
       "file stays as it is.\n\n"

@@ -19,13 +19,9 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/file/whole_file.h"
-#include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/report/feature_pictures.h"
-#include "cartographer_sdf/report/map_painter.h"
-#include "cartographer_sdf/report/match_map.h"
 #include "cartographer_sdf/report/match_table.h"
-#include "cartographer_sdf/report/submap_pictures.h"
-#include "cartographer_sdf/report/svg_plot.h"
+#include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/method_options.h"
 #include "cartographer_sdf/tools/progress.h"
@@ -37,12 +33,6 @@ DECLARE_string(method);
 DEFINE_string(submap, "",
               "The submap whose features are drawn, by trajectory,index; if "
               "empty, the first of those with the most features.");
-DEFINE_string(
-    figure_pair, "",
-    "The match that is drawn, by trajectory,index of the reference "
-    "and of the query; if empty, of two maps the best of the accepted "
-    "ones, of one map the accepted one of submaps farthest apart in "
-    "time.");
 DEFINE_int32(figure_pixels, 700, "Longer side of the pictures [pixels].");
 
 namespace cartographer_sdf {
@@ -50,20 +40,18 @@ namespace {
 
 constexpr double kMaskClearances[] = {2., 1.5, 1., 0.5};  // [m], Fig. 6
 
-absl::StatusOr<std::vector<int>> ParseIds(const std::string& flag,
-                                          const std::string& text,
-                                          const size_t count) {
-  std::vector<int> ids;
-  for (const absl::string_view part : absl::StrSplit(text, ',')) {
-    int id = 0;
-    ids.push_back(absl::SimpleAtoi(part, &id) ? id : -1);
+absl::StatusOr<std::optional<SubmapId>> SubmapOfFlags() {
+  if (FLAGS_submap.empty()) return std::nullopt;
+  const std::vector<std::string> parts = absl::StrSplit(FLAGS_submap, ',');
+  SubmapId id;
+  if (parts.size() != 2 || !absl::SimpleAtoi(parts[0], &id.trajectory) ||
+      !absl::SimpleAtoi(parts[1], &id.index) || id.trajectory < 0 ||
+      id.index < 0) {
+    return UsageError(
+        absl::StrCat("--submap must be 2 numbers, separated by commas, it is ",
+                     FLAGS_submap));
   }
-  if (ids.size() != count || *std::min_element(ids.begin(), ids.end()) < 0) {
-    return UsageError(absl::StrCat("--", flag, " must be ", count,
-                                   " numbers, separated by commas, it is ",
-                                   text));
-  }
-  return ids;
+  return id;
 }
 
 struct DescribedGrid {
@@ -86,31 +74,8 @@ std::optional<DescribedGrid> DescribeGrid(const PlaceOptions& options,
   return described;
 }
 
-// Where pictures go, and which were written.
-class Output {
- public:
-  [[nodiscard]] absl::Status Open() const {
-    std::error_code error;
-    std::filesystem::create_directories(FLAGS_output, error);
-    if (!std::filesystem::is_directory(FLAGS_output, error)) {
-      return absl::UnavailableError(
-          absl::StrCat("cannot make the directory ", FLAGS_output));
-    }
-    return absl::OkStatus();
-  }
-  void Write(const std::string& name, const std::string& content) {
-    if (!status_.ok()) return;
-    const std::string path = absl::StrCat(FLAGS_output, "/", name);
-    status_ = WriteWholeFile(path, content);
-    if (status_.ok()) paths_.push_back(path);
-  }
-  [[nodiscard]] const absl::Status& status() const { return status_; }
-  [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
-
- private:
-  absl::Status status_;
-  std::vector<std::string> paths_;
-};
+// Names of files and what is in them.
+using Pictures = std::vector<std::pair<std::string, std::string>>;
 
 // A strong one in free space, of the middle of a room: the strongest maximum
 // whose window holds no wall, or else the strongest of all.
@@ -130,159 +95,135 @@ size_t ChooseFeature(const DescriptorOptions& options,
   return static_cast<size_t>(best - features.features.begin());
 }
 
-void DrawSubmap(const PlaceOptions& options, const DescribedGrid& submap,
-                Output* const output) {
+Pictures DrawSubmap(const PlaceOptions& options, const DescribedGrid& submap) {
   const int pixels = FLAGS_figure_pixels;
-  const std::vector<MarkedKeypoint> keypoints = MarkKeypoints(submap.features);
-  output->Write("grid.png", DrawOccupancyGrid(submap.grid, pixels).EncodePng());
-  const auto draw_field = [&](const std::vector<MarkedKeypoint>& marked) {
-    return DrawDistanceField(submap.field.geometry, submap.field.distance,
-                             submap.field.observed, marked, pixels)
-        .EncodePng();
+  const std::vector<Feature>& features = submap.features.features;
+  const auto draw_field = [&](const std::vector<Feature>& marked) {
+    return DrawDistanceField(submap.field, marked, pixels).EncodePng();
   };
-  output->Write("field.png", draw_field({}));
-  output->Write("keypoints.png", draw_field(keypoints));
-  output->Write("surface.png",
-                DrawFieldSurface(submap.field, keypoints, pixels).EncodePng());
+  Pictures pictures = {
+      {"grid.png", DrawOccupancyGrid(submap.grid, pixels).EncodePng()},
+      {"field.png", draw_field({})},
+      {"keypoints.png", draw_field(features)},
+      {"surface.png",
+       DrawFieldSurface(submap.field, features, pixels).EncodePng()}};
   for (const double clearance : kMaskClearances) {
-    output->Write(
+    pictures.emplace_back(
         absl::StrFormat("mask_%.1fm.png", clearance),
         DrawClearanceMask(submap.field, clearance, pixels).EncodePng());
   }
-  if (submap.features.features.empty()) return;
+  if (features.empty()) return pictures;
   const size_t chosen = ChooseFeature(options.descriptor, submap.features);
-  const Feature& feature = submap.features.features[chosen];
-  output->Write("feature_location.png", draw_field({keypoints[chosen]}));
-  output->Write("feature_window.png",
-                DrawFeatureWindow(options.descriptor, submap.field,
-                                  submap.smoothed, feature, pixels)
-                    .EncodePng());
-  output->Write("feature_histogram.svg",
-                StandaloneSvg(RenderDescriptor(submap.features.descriptors.col(
-                    static_cast<Eigen::Index>(chosen)))));
+  pictures.emplace_back("feature_location.png", draw_field({features[chosen]}));
+  pictures.emplace_back(
+      "feature_window.png",
+      DrawFeatureWindow(options.descriptor, submap.field, submap.smoothed,
+                        features[chosen], pixels)
+          .EncodePng());
+  pictures.emplace_back(
+      "feature_histogram.svg",
+      StandaloneSvg(RenderDescriptor(
+          submap.features.descriptors.col(static_cast<Eigen::Index>(chosen)))));
+  return pictures;
 }
 
-std::vector<PlacedGrid> PlaceGrids(const MapState& state) {
-  std::vector<PlacedGrid> grids;
-  for (const auto& [id, submap] : state.submaps) {
-    const auto pose = state.pose_graph.submap_poses.find(id);
-    if (pose != state.pose_graph.submap_poses.end()) {
-      grids.push_back({submap.geometry, pose->second});
-    }
-  }
-  return grids;
-}
-
-std::vector<ShownPath> Paths(const PoseGraph& pose_graph,
-                             const Rigid2& T_picture_map, const bool is_query) {
-  std::map<int, ShownPath> paths;
-  for (const auto& [id, node] : pose_graph.nodes) {
-    ShownPath& path = paths[id.trajectory];
-    path.is_query = is_query;
-    path.positions.push_back(T_picture_map * node.T_map_node.translation());
-  }
-  std::vector<ShownPath> list;
-  for (auto& entry : paths) list.push_back(std::move(entry.second));
-  return list;
-}
-
-absl::StatusOr<std::pair<SubmapId, SubmapId>> ChooseMatch(
-    const bool has_query) {
-  if (!FLAGS_figure_pair.empty()) {
-    const absl::StatusOr<std::vector<int>> ids =
-        ParseIds("figure_pair", FLAGS_figure_pair, 4);
-    if (!ids.ok()) return ids.status();
-    return std::make_pair(SubmapId{(*ids)[0], (*ids)[1]},
-                          SubmapId{(*ids)[2], (*ids)[3]});
-  }
-  const absl::StatusOr<std::vector<MatchRow>> matches =
-      ReadMatches(FLAGS_matches);
+// Of two maps the best of the accepted matches, of one map the accepted one of
+// submaps farthest apart in time.
+absl::StatusOr<MatchRow> ChooseMatch() {
+  absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(FLAGS_matches);
   if (!matches.ok()) return matches.status();
-  const auto rank = [has_query](const MatchRow& match) {
-    const int gap =
-        has_query || match.reference.trajectory != match.query.trajectory
-            ? 0
-            : std::abs(match.query.index - match.reference.index);
+  const auto rank = [](const MatchRow& match) {
+    const int gap = !FLAGS_query.empty() ||
+                            match.reference.trajectory != match.query.trajectory
+                        ? 0
+                        : std::abs(match.query.index - match.reference.index);
     return std::make_pair(gap, match.score);
   };
-  const MatchRow* best = nullptr;
-  for (const MatchRow& match : *matches) {
-    if (match.accepted && (best == nullptr || rank(*best) < rank(match))) {
-      best = &match;
-    }
-  }
-  if (best == nullptr) {
+  matches->erase(
+      std::remove_if(matches->begin(), matches->end(),
+                     [](const MatchRow& match) { return !match.accepted; }),
+      matches->end());
+  if (matches->empty()) {
     return absl::NotFoundError(
         absl::StrCat(FLAGS_matches, " has no accepted match"));
   }
-  return std::make_pair(best->reference, best->query);
+  return *std::max_element(matches->begin(), matches->end(),
+                           [&rank](const MatchRow& a, const MatchRow& b) {
+                             return rank(a) < rank(b);
+                           });
 }
 
-// Reads one map, and one grid of it apart.
-absl::StatusOr<MapState> ReadWithGrid(
+// A map, and the grids of some of its submaps.
+struct MapWithGrids {
+  MapState state;
+  std::map<SubmapId, OccupancyGrid> grids;
+};
+
+absl::StatusOr<MapWithGrids> ReadWithGrids(
     const std::string& path, const std::set<SubmapId>& wanted,
-    std::map<SubmapId, OccupancyGrid>* const grids,
     const ProgressCallback& on_progress) {
+  MapWithGrids map;
   absl::StatusOr<MapState> state =
       ReadMap(path,
               {[&](const SubmapId& id, const SubmapSummary&,
                    const OccupancyGrid& grid) {
-                if (wanted.count(id) > 0) grids->emplace(id, grid);
+                if (wanted.count(id) > 0) map.grids.emplace(id, grid);
               }},
               on_progress);
   if (!state.ok()) return state.status();
+  map.state = *std::move(state);
   for (const SubmapId& id : wanted) {
-    if (grids->count(id) == 0 ||
-        state->pose_graph.submap_poses.count(id) == 0) {
+    if (map.grids.count(id) == 0 ||
+        map.state.pose_graph.submap_poses.count(id) == 0) {
       return absl::NotFoundError(
           absl::StrCat(path, " has no submap ", id.trajectory, ",", id.index));
     }
   }
-  return state;
+  return map;
 }
 
-// Two submaps, and the maps that they are of.
+// Two submaps, and the map that the reference is of.
 struct SubmapPair {
   SubmapId reference_id;
   SubmapId query_id;
-  OccupancyGrid reference_grid;
-  OccupancyGrid query_grid;
-  MapState map;
+  MapWithGrids map;
   // None where the query is of the same map.
-  std::optional<MapState> query_map;
+  std::optional<MapWithGrids> query_map;
+
+  [[nodiscard]] const OccupancyGrid& reference() const {
+    return map.grids.at(reference_id);
+  }
+  [[nodiscard]] const OccupancyGrid& query() const {
+    return (query_map ? *query_map : map).grids.at(query_id);
+  }
 };
 
 absl::StatusOr<SubmapPair> ReadPair(const SubmapId& reference_id,
                                     const SubmapId& query_id,
                                     const ProgressCallback& on_progress) {
-  const bool has_query = !FLAGS_query.empty();
-  std::map<SubmapId, OccupancyGrid> reference_grids, query_grids;
+  SubmapPair pair{reference_id, query_id, {}, {}};
   std::set<SubmapId> wanted = {reference_id};
-  if (!has_query) wanted.insert(query_id);
-  absl::StatusOr<MapState> map =
-      ReadWithGrid(FLAGS_input, wanted, &reference_grids, on_progress);
-  if (!map.ok()) return map.status();
-  std::optional<MapState> query_map;
-  if (has_query) {
-    absl::StatusOr<MapState> read =
-        ReadWithGrid(FLAGS_query, {query_id}, &query_grids, on_progress);
-    if (!read.ok()) return read.status();
-    query_map = *std::move(read);
+  if (FLAGS_query.empty()) {
+    wanted.insert(query_id);
+  } else {
+    absl::StatusOr<MapWithGrids> query =
+        ReadWithGrids(FLAGS_query, {query_id}, on_progress);
+    if (!query.ok()) return query.status();
+    pair.query_map = *std::move(query);
   }
-  return SubmapPair{reference_id,
-                    query_id,
-                    reference_grids.at(reference_id),
-                    (has_query ? query_grids : reference_grids).at(query_id),
-                    *std::move(map),
-                    std::move(query_map)};
+  absl::StatusOr<MapWithGrids> map =
+      ReadWithGrids(FLAGS_input, wanted, on_progress);
+  if (!map.ok()) return map.status();
+  pair.map = *std::move(map);
+  return pair;
 }
 
 absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
                                 const SubmapPair& pair) {
   std::optional<Place> reference =
-      DescribePlace(stages.place, pair.reference_id, pair.reference_grid);
+      DescribePlace(stages.place, pair.reference_id, pair.reference());
   std::optional<Place> query =
-      DescribePlace(stages.place, pair.query_id, pair.query_grid);
+      DescribePlace(stages.place, pair.query_id, pair.query());
   std::optional<Match> match;
   if (reference && query) {
     if (stages.recognition.match.method == Method::kSdf) {
@@ -300,98 +241,79 @@ absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
   return *std::move(match);
 }
 
-// Draws all submaps of the map at --input.
-absl::Status PaintInput(const PoseGraph& pose_graph,
-                        const ProgressCallback& on_progress,
-                        MapPainter* const painter) {
-  return ReadMap(FLAGS_input,
-                 {[&](const SubmapId& id, const SubmapSummary&,
-                      const OccupancyGrid& grid) {
-                   const auto pose = pose_graph.submap_poses.find(id);
-                   if (pose != pose_graph.submap_poses.end()) {
-                     painter->AddSubmap(grid, pose->second);
-                   }
-                 }},
-                 on_progress)
-      .status();
-}
-
 // Within one map, both lie where the map has them: the lines show by how much
 // it is off. Another session is put where the match says.
 absl::StatusOr<Picture> DrawPairOnMap(const FieldOptions& field,
                                       const SubmapPair& pair,
-                                      const Rigid2& T_reference_query,
-                                      const std::vector<PointPair>& inliers,
+                                      const Match& match,
                                       const ProgressCallback& on_progress) {
-  const PoseGraph& pose_graph = pair.map.pose_graph;
-  const Rigid2 T_map_reference = pose_graph.submap_poses.at(pair.reference_id);
-  const Rigid2 T_map_query = pair.query_map
-                                 ? T_map_reference * T_reference_query
-                                 : pose_graph.submap_poses.at(pair.query_id);
-  std::vector<PlacedGrid> grids = PlaceGrids(pair.map);
-  std::vector<ShownPath> paths = Paths(pose_graph, Rigid2(), false);
+  const PoseGraph& pose_graph = pair.map.state.pose_graph;
+  ShownSubmap reference{*MakeDistanceField(field, pair.reference()),
+                        pose_graph.submap_poses.at(pair.reference_id),
+                        PathsOf(pose_graph)};
+  ShownSubmap query{*MakeDistanceField(field, pair.query()),
+                    reference.T_map_submap * match.pair.T_reference_query,
+                    {}};
+  std::vector<PlacedGrid> grids = PlaceGrids(pair.map.state, pose_graph);
   if (pair.query_map) {
-    const PoseGraph& query_graph = pair.query_map->pose_graph;
+    const PoseGraph& query_graph = pair.query_map->state.pose_graph;
     const Rigid2 T_map_other =
-        T_map_query * query_graph.submap_poses.at(pair.query_id).Inverse();
-    for (ShownPath& path : Paths(query_graph, T_map_other, true)) {
-      paths.push_back(std::move(path));
+        query.T_map_submap *
+        query_graph.submap_poses.at(pair.query_id).Inverse();
+    query.paths = PathsOf(query_graph);
+    for (auto& [trajectory, path] : query.paths) {
+      for (Eigen::Vector2d& position : path) position = T_map_other * position;
     }
-    grids.push_back({pair.query_grid.geometry, T_map_query});
+    grids.push_back({pair.query().geometry, query.T_map_submap});
+  } else {
+    query.T_map_submap = pose_graph.submap_poses.at(pair.query_id);
   }
   MapPainter painter(grids, 2 * FLAGS_figure_pixels);
-  const absl::Status status = PaintInput(pose_graph, on_progress, &painter);
-  if (!status.ok()) return status;
-  const ShownMatch shown{
-      {*MakeDistanceField(field, pair.reference_grid), T_map_reference},
-      {*MakeDistanceField(field, pair.query_grid), T_map_query},
-      inliers};
-  return DrawMatchOnMap(painter, paths, shown);
+  const absl::StatusOr<MapState> read =
+      ReadMap(FLAGS_input,
+              {[&](const SubmapId& id, const SubmapSummary&,
+                   const OccupancyGrid& grid) {
+                const auto pose = pose_graph.submap_poses.find(id);
+                if (pose == pose_graph.submap_poses.end()) return;
+                painter.AddSubmap(grid, pose->second);
+              }},
+              on_progress);
+  if (!read.ok()) return read.status();
+  return DrawMatchOnMap(painter, reference, query, match.inliers);
 }
 
-absl::Status DrawMatch(const MethodOptions& method, Output* const output) {
-  const absl::StatusOr<std::pair<SubmapId, SubmapId>> chosen =
-      ChooseMatch(!FLAGS_query.empty());
+absl::Status DrawMatch(const MethodOptions& method, Pictures* const pictures) {
+  const absl::StatusOr<MatchRow> chosen = ChooseMatch();
   if (!chosen.ok()) return chosen.status();
   Progress progress("draw a match");
   const absl::StatusOr<SubmapPair> pair =
-      ReadPair(chosen->first, chosen->second, progress.Callback());
+      ReadPair(chosen->reference, chosen->query, progress.Callback());
   if (!pair.ok()) return pair.status();
   const LoopClosingOptions& stages = method.options.loop_closing;
   const absl::StatusOr<Match> match = MatchPair(stages, *pair);
   if (!match.ok()) return match.status();
-  const Rigid2& T_reference_query = match->pair.T_reference_query;
-  std::vector<PointPair> inliers;
-  for (const auto& inlier : match->inliers) {
-    inliers.push_back({inlier.first, inlier.second});
-  }
-  output->Write("match_pair.png",
-                DrawMatchedPair(pair->reference_grid, pair->query_grid,
-                                T_reference_query, inliers, FLAGS_figure_pixels)
-                    .EncodePng());
+  pictures->emplace_back("match_pair.png",
+                         DrawMatchedPair(pair->reference(), pair->query(),
+                                         match->pair.T_reference_query,
+                                         match->inliers, FLAGS_figure_pixels)
+                             .EncodePng());
   const absl::StatusOr<Picture> on_map =
-      DrawPairOnMap(stages.place.field, *pair, T_reference_query, inliers,
-                    progress.Callback());
+      DrawPairOnMap(stages.place.field, *pair, *match, progress.Callback());
   if (!on_map.ok()) return on_map.status();
-  output->Write("match_map.png", on_map->EncodePng());
+  pictures->emplace_back("match_map.png", on_map->EncodePng());
   return absl::OkStatus();
 }
 
 absl::StatusOr<DescribedGrid> ReadSubmap(const PlaceOptions& options) {
-  std::optional<SubmapId> wanted;
-  if (!FLAGS_submap.empty()) {
-    const absl::StatusOr<std::vector<int>> ids =
-        ParseIds("submap", FLAGS_submap, 2);
-    if (!ids.ok()) return ids.status();
-    wanted = SubmapId{(*ids)[0], (*ids)[1]};
-  }
+  const absl::StatusOr<std::optional<SubmapId>> wanted = SubmapOfFlags();
+  if (!wanted.ok()) return wanted.status();
   Progress progress("read");
   std::optional<DescribedGrid> best;
   const absl::StatusOr<MapState> state = ReadMap(
       FLAGS_input,
       {[&](const SubmapId& id, const SubmapSummary&,
            const OccupancyGrid& grid) {
-        if (wanted && id != *wanted) return;
+        if (*wanted && id != **wanted) return;
         std::optional<DescribedGrid> described = DescribeGrid(options, grid);
         if (described && (!best || described->features.features.size() >
                                        best->features.features.size())) {
@@ -402,9 +324,8 @@ absl::StatusOr<DescribedGrid> ReadSubmap(const PlaceOptions& options) {
   if (!state.ok()) return state.status();
   if (!best) {
     return absl::NotFoundError(
-        wanted ? absl::StrCat(FLAGS_input, " has no submap ", FLAGS_submap,
-                              " with walls")
-               : absl::StrCat(FLAGS_input, " has no submap with walls"));
+        absl::StrCat(FLAGS_input, " has no submap ", FLAGS_submap,
+                     FLAGS_submap.empty() ? "" : " ", "with walls"));
   }
   return *std::move(best);
 }
@@ -413,9 +334,8 @@ absl::Status RunFigures() {
   if (FLAGS_figure_pixels < 16 || FLAGS_figure_pixels > 8192) {
     return UsageError("--figure_pixels must be from 16 to 8192");
   }
-  const bool has_match = !FLAGS_matches.empty() || !FLAGS_figure_pair.empty();
-  if (!FLAGS_query.empty() && !has_match) {
-    return UsageError("--query needs --matches or --figure_pair");
+  if (!FLAGS_query.empty() && FLAGS_matches.empty()) {
+    return UsageError("--query needs --matches");
   }
   const absl::StatusOr<MethodOptions> method =
       LoadOptionsOfMethod(FLAGS_method);
@@ -426,16 +346,23 @@ absl::Status RunFigures() {
   const PlaceOptions& place = method->options.loop_closing.place;
   const absl::StatusOr<DescribedGrid> submap = ReadSubmap(place);
   if (!submap.ok()) return submap.status();
-  Output output;
-  absl::Status status = output.Open();
-  if (!status.ok()) return status;
-  DrawSubmap(place, *submap, &output);
-  if (has_match) {
-    status = DrawMatch(*method, &output);
+  Pictures pictures = DrawSubmap(place, *submap);
+  if (!FLAGS_matches.empty()) {
+    const absl::Status status = DrawMatch(*method, &pictures);
     if (!status.ok()) return status;
   }
-  if (!output.status().ok()) return output.status();
-  for (const std::string& path : output.paths()) std::cout << path << "\n";
+  std::error_code error;
+  std::filesystem::create_directories(FLAGS_output, error);
+  if (!std::filesystem::is_directory(FLAGS_output, error)) {
+    return absl::UnavailableError(
+        absl::StrCat("cannot make the directory ", FLAGS_output));
+  }
+  for (const auto& [name, content] : pictures) {
+    const std::string path = absl::StrCat(FLAGS_output, "/", name);
+    const absl::Status status = WriteWholeFile(path, content);
+    if (!status.ok()) return status;
+    std::cout << path << "\n";
+  }
   return absl::OkStatus();
 }
 
@@ -454,12 +381,12 @@ Subcommand Figures() {
       "weighted gradients around it (feature_window.png) and its descriptor "
       "(feature_histogram.svg). Maxima are red, saddles green, minima "
       "yellow.\n\n"
-      "With --matches or --figure_pair, also one match: both submaps on the "
-      "map "
-      "with the paths of the robot (match_map.png; reference blue, query red, "
+      "With --matches, also one match, of two maps the best, of one map the "
+      "one of submaps farthest apart in time: both submaps on the map with the "
+      "paths of the robot (match_map.png; reference blue, query red, "
       "features that agree black) and laid over each other (match_pair.png).",
       {"input", "output"},
-      {"query", "submap", "matches", "figure_pair", "method", "figure_pixels",
+      {"query", "submap", "matches", "method", "figure_pixels",
        "configuration_directory", "configuration_basename"},
       &RunFigures};
 }

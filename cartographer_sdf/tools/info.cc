@@ -3,15 +3,17 @@
 
 #include <iostream>
 #include <map>
+#include <string>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/closing/torn_submaps.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/stages.h"
+#include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
@@ -22,13 +24,27 @@ DEFINE_bool(torn_submaps, false,
 namespace cartographer_sdf {
 namespace {
 
-struct MapInfo {
-  MapState state;
-  std::map<SubmapId, Tear> torn_submaps;  // where they were asked for
-};
+// Lines about the torn submaps. The options are read only here: what a map
+// holds can be told without.
+absl::StatusOr<std::string> DescribeTornSubmaps(
+    const MapState& state, const std::map<NodeId, PointCloud2>& scans,
+    StageProgress* const progress) {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const std::map<SubmapId, Tear> torn_submaps = FindTornSubmaps(
+      options->loop_closing.closing.tear, state.pose_graph, scans,
+      MakeExecutor(*num_threads), progress->Begin("find torn submaps"));
+  std::string text =
+      absl::StrFormat("\nTorn submaps: %d\n", torn_submaps.size());
+  for (const auto& [id, tear] : torn_submaps) {
+    absl::StrAppend(&text, "  ", DescribeTear(id, tear), "\n");
+  }
+  return text;
+}
 
-absl::StatusOr<MapInfo> ReadInfo(const TearOptions& options,
-                                 const int num_threads) {
+absl::Status RunInfo() {
   StageProgress progress;
   std::map<NodeId, PointCloud2> scans;
   MapVisitor visitor;
@@ -37,39 +53,15 @@ absl::StatusOr<MapInfo> ReadInfo(const TearOptions& options,
       scans.emplace(id, std::move(scan));
     };
   }
-  absl::StatusOr<MapState> state =
+  const absl::StatusOr<MapState> state =
       ReadMap(FLAGS_input, visitor, progress.Begin("read"));
   if (!state.ok()) return state.status();
-  MapInfo info{*std::move(state), {}};
+  absl::StatusOr<std::string> torn_submaps;
   if (FLAGS_torn_submaps) {
-    info.torn_submaps = FindTornSubmaps(options, info.state.pose_graph, scans,
-                                        MakeExecutor(num_threads),
-                                        progress.Begin("find torn submaps"));
+    torn_submaps = DescribeTornSubmaps(*state, scans, &progress);
+    if (!torn_submaps.ok()) return torn_submaps.status();
   }
-  return info;
-}
-
-absl::Status RunInfo() {
-  TearOptions tear;
-  int num_threads = 1;
-  // Only then: without them, no options are needed.
-  if (FLAGS_torn_submaps) {
-    const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-    if (!options.ok()) return options.status();
-    tear = options->loop_closing.closing.tear;
-    const absl::StatusOr<int> threads = NumThreadsOfFlags();
-    if (!threads.ok()) return threads.status();
-    num_threads = *threads;
-  }
-  const absl::StatusOr<MapInfo> info = ReadInfo(tear, num_threads);
-  if (!info.ok()) return info.status();
-  std::cout << DescribeMap(FLAGS_input, info->state);
-  if (!FLAGS_torn_submaps) return absl::OkStatus();
-  std::cout << absl::StrFormat("\nTorn submaps: %d\n",
-                               info->torn_submaps.size());
-  for (const auto& [id, tear] : info->torn_submaps) {
-    std::cout << "  " << DescribeTear(id, tear) << "\n";
-  }
+  std::cout << DescribeMap(FLAGS_input, *state) << torn_submaps.value_or("");
   return absl::OkStatus();
 }
 

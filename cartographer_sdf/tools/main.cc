@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/tools/allocator.h"
-#include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "glog/logging.h"
 
@@ -15,6 +13,5 @@ int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_WARNING;
   google::InitGoogleLogging(argc > 0 ? argv[0] : "cartographer_sdf");
   return cartographer_sdf::RunProgram(
-      cartographer_sdf::AllSubcommands(),
       std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
 }

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <iostream>
-#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/closing/closure.h"
@@ -93,53 +94,36 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
                      on_progress);
 }
 
-struct MatchedMaps {
-  DescribedMap map;
-  std::optional<DescribedMap>
-      query;  // absent where a map is matched with itself
-  std::vector<Match> matches;
-};
-
-absl::StatusOr<MatchedMaps> MatchMaps(const MethodOptions& method,
-                                      const Executor& executor,
-                                      StageClock* const clock) {
-  const RecognitionOptions& recognition =
-      method.options.loop_closing.recognition;
-  MatchedMaps result;
-  absl::StatusOr<DescribedMap> map =
-      Describe(method, FLAGS_input, executor, clock);
-  if (!map.ok()) return map.status();
-  result.map = *std::move(map);
-  if (FLAGS_query.empty()) {
-    result.matches = RecognizeWithin(
-        recognition, result.map.trajectory_places(), executor, clock);
-    return result;
+// The map and, if there is one, the query.
+absl::StatusOr<std::vector<DescribedMap>> DescribeMaps(
+    const MethodOptions& method, const Executor& executor,
+    StageClock* const clock) {
+  std::vector<DescribedMap> maps;
+  for (const std::string& path : {FLAGS_input, FLAGS_query}) {
+    if (path.empty()) continue;
+    absl::StatusOr<DescribedMap> map = Describe(method, path, executor, clock);
+    if (!map.ok()) return map.status();
+    maps.push_back(*std::move(map));
   }
-  absl::StatusOr<DescribedMap> query =
-      Describe(method, FLAGS_query, executor, clock);
-  if (!query.ok()) return query.status();
-  result.query = *std::move(query);
-  result.matches =
-      RecognizeBetween(recognition, result.map.trajectory_places(),
-                       result.query->trajectory_places(), executor, clock);
-  return result;
+  return maps;
 }
 
 // Takes back the acceptance of rows whose matches the others do not support.
 void RefuseInconsistent(const ConsistencyOptions& options,
-                        const MatchedMaps& maps,
+                        const std::vector<DescribedMap>& maps,
+                        const std::vector<Match>& matches,
                         std::vector<MatchRow>* const rows) {
   std::vector<PairPose> pairs;
   std::vector<MatchRow*> accepted;
   for (size_t k = 0; k < rows->size(); ++k) {
     if (!(*rows)[k].accepted) continue;
-    pairs.push_back(maps.matches[k].pair);
+    pairs.push_back(matches[k].pair);
     accepted.push_back(&(*rows)[k]);
   }
   const std::vector<SelectionResult> results =
-      maps.query ? SelectConsistentBetween(options, maps.map.odometry,
-                                           maps.query->odometry, pairs)
-                 : SelectConsistent(options, maps.map.odometry, pairs);
+      maps.size() > 1 ? SelectConsistentBetween(options, maps[0].odometry,
+                                                maps[1].odometry, pairs)
+                      : SelectConsistent(options, maps[0].odometry, pairs);
   for (size_t k = 0; k < results.size(); ++k) {
     if (results[k].selection == Selection::kSelected) continue;
     accepted[k]->accepted = false;
@@ -178,21 +162,27 @@ absl::Status RunMatch() {
   const StageCallback on_stage = progress.Callback();
   std::vector<std::pair<std::string, double>> stage_seconds;
   StageClock clock(on_stage, &stage_seconds);
-  const absl::StatusOr<MatchedMaps> maps =
-      MatchMaps(*method, MakeExecutor(*num_threads), &clock);
+  const Executor executor = MakeExecutor(*num_threads);
+  const absl::StatusOr<std::vector<DescribedMap>> maps =
+      DescribeMaps(*method, executor, &clock);
   if (!maps.ok()) return maps.status();
+  const LoopClosingOptions& stages = method->options.loop_closing;
+  const TrajectoryPlaces places = maps->front().trajectory_places();
+  const std::vector<Match> matches =
+      maps->size() > 1
+          ? RecognizeBetween(stages.recognition, places,
+                             maps->back().trajectory_places(), executor, &clock)
+          : RecognizeWithin(stages.recognition, places, executor, &clock);
   clock.End();
   std::vector<MatchRow> rows;
-  for (const Match& match : maps->matches) {
+  for (const Match& match : matches) {
     rows.push_back(ToRow(match, match.verdict == Verdict::kAccepted,
                          VerdictName(match.verdict)));
   }
   if (FLAGS_agree) {
-    RefuseInconsistent(method->options.loop_closing.closing.consistency, *maps,
-                       &rows);
+    RefuseInconsistent(stages.closing.consistency, *maps, matches, &rows);
   }
-  if (absl::Status status = WriteTables(*method, maps->matches, rows);
-      !status.ok()) {
+  if (absl::Status status = WriteTables(*method, matches, rows); !status.ok()) {
     return status;
   }
   const auto num_accepted =
@@ -211,8 +201,7 @@ Subcommand MatchSubcommand() {
       "the submaps of one or two maps that show the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
       "[--method sdf|paper|shape_context] [--retrieval] [--places P.places] "
-      "[--alone] "
-      "[--agree]",
+      "[--alone] [--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
       "pose of each pair for which there is one, accepted or not, with its "
       "evidence. Nothing is optimised.\n\n"

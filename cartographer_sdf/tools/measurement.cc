@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/whole_file.h"
-#include "cartographer_sdf/report/text_table.h"
+#include "cartographer_sdf/report/text.h"
 
 namespace cartographer_sdf {
 namespace {

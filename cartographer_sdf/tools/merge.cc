@@ -4,20 +4,16 @@
 #include "cartographer_sdf/apps/merge.h"
 
 #include <iostream>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
-#include "cartographer_sdf/report/session_json.h"
-#include "cartographer_sdf/report/session_report.h"
+#include "cartographer_sdf/report/json.h"
+#include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -34,10 +30,7 @@ void PrintSummary(const MergingResult& result) {
     const MergedSession& session = result.sessions[k];
     std::cout << absl::StrFormat("%3d  %s: ", k + 1, session.path);
     if (session.T_merged_session) {
-      const Rigid2& pose = *session.T_merged_session;
-      std::cout << absl::StrFormat(
-          "at x %.3f m, y %.3f m, yaw %.2f deg\n", pose.translation().x(),
-          pose.translation().y(), pose.rotation() * 180. / M_PI);
+      std::cout << "at " << FormatPose(*session.T_merged_session) << "\n";
     } else {
       std::cout << "NOT CONNECTED, not in the merged map\n";
     }
@@ -48,20 +41,11 @@ void PrintSummary(const MergingResult& result) {
         "  %d and %d: %s, %s\n", link.first + 1, link.second + 1,
         LocalizationVerdictName(found.verdict), found.reason);
   }
-  std::map<ClosureStatus, int> statuses;
-  for (const Closure& closure : result.closed.closures) {
-    ++statuses[closure.status];
-  }
-  for (const auto& [status, count] : statuses) {
-    std::cout << absl::StrFormat("  %5d closures %s\n", count,
-                                 ClosureStatusName(status));
-  }
+  PrintStatuses("closures ", result.closed.closures);
   std::cout << absl::StrFormat(
       "  %d pairs of submaps overlap, %d of them contradict each other\n",
       result.num_overlapping, result.contradictions.size());
-  for (const auto& [stage, seconds] : result.stage_seconds) {
-    std::cout << absl::StrFormat("  %7.2f s %s\n", seconds, stage);
-  }
+  PrintStages(result.stage_seconds);
 }
 
 absl::StatusOr<std::vector<std::string>> InputsOfFlags() {
@@ -100,29 +84,21 @@ absl::Status WriteFiles(const Options& options, const MergingResult& result,
 }
 
 absl::Status RunMerge() {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  if (absl::Status status = RequireVerification(options->loop_closing, "merge");
-      !status.ok()) {
-    return status;
-  }
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
-  const absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
-  if (!frozen.ok()) return frozen.status();
+  const absl::StatusOr<MapTask> task = MapTaskOfFlags("merge");
+  if (!task.ok()) return task.status();
   const absl::StatusOr<std::vector<std::string>> inputs = InputsOfFlags();
   if (!inputs.ok()) return inputs.status();
+  const Options& options = task->options;
   StageProgress progress;
-  const absl::StatusOr<MergingResult> result =
-      MergeSessions(options->fold_check, options->localization,
-                    options->scan_places, options->loop_closing, *inputs,
-                    *frozen, MakeExecutor(*num_threads), progress.Callback());
+  const absl::StatusOr<MergingResult> result = MergeSessions(
+      options.fold_check, options.localization, options.scan_places,
+      options.loop_closing, *inputs, task->frozen_trajectories, task->executor,
+      progress.Callback());
   if (!result.ok()) return result.status();
-  const absl::Status status = WriteFiles(*options, *result, &progress);
+  const absl::Status status = WriteFiles(options, *result, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);
-  std::cout << FLAGS_output << "\n";
-  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
+  PrintPaths();
   return absl::OkStatus();
 }
 
@@ -138,8 +114,7 @@ Subcommand MergeSubcommand() {
       "prior; adds the closures between them and within each; optimises, with "
       "the odometry weights that each map shows; and writes one map that "
       "Cartographer's own tools load. Trajectories are numbered in the order "
-      "of "
-      "the inputs; assets_writer takes one bag for each, in that order. All "
+      "of the inputs; assets_writer takes one bag for each, in that order. All "
       "nodes, times and sensor data are kept.\n\n"
       "The largest group of maps that are connected is merged, in the frame of "
       "its first; others are reported. Where nothing is connected, or the "

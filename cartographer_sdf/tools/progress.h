@@ -5,9 +5,12 @@
 #define CARTOGRAPHER_SDF_TOOLS_PROGRESS_H_
 
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <ostream>
 #include <string>
+
+#include "cartographer_sdf/execution/stage_clock.h"
 
 namespace cartographer_sdf {
 
@@ -32,7 +35,7 @@ class Progress {
 
   void Update(double fraction);
   // For those who take a std::function; not to be used after this object.
-  [[nodiscard]] std::function<void(double)> Callback() {
+  [[nodiscard]] ProgressCallback Callback() {
     return [this](const double fraction) { Update(fraction); };
   }
   // Since the beginning.
@@ -48,6 +51,24 @@ class Progress {
   // When the line was last drawn, guarded by the mutex.
   double last_drawn_ = 0.;
   bool is_drawn_ = false;
+};
+
+// A progress line for one stage after the other.
+class StageProgress {
+ public:
+  // Not to be used after this object.
+  [[nodiscard]] StageCallback Callback() {
+    return [this](const std::string& stage) { return Begin(stage); };
+  }
+  [[nodiscard]] ProgressCallback Begin(const std::string& stage) {
+    // The line of the stage before goes first.
+    progress_.reset();
+    progress_ = std::make_unique<Progress>(stage);
+    return progress_->Callback();
+  }
+
+ private:
+  std::unique_ptr<Progress> progress_;
 };
 
 }  // namespace cartographer_sdf

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,11 +14,11 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/apps/session.h"
-#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
-#include "cartographer_sdf/report/session_json.h"
-#include "cartographer_sdf/report/session_report.h"
+#include "cartographer_sdf/report/json.h"
+#include "cartographer_sdf/report/map_summary.h"
+#include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -80,32 +78,17 @@ absl::Status CheckNumStarts() {
   return absl::OkStatus();
 }
 
-// Of the longest trajectory [s].
-double Duration(const std::map<NodeId, Node>& nodes) {
-  std::map<int, std::pair<int64_t, int64_t>> ranges;
-  for (const auto& [id, node] : nodes) {
-    auto& [begin, end] =
-        ranges.emplace(id.trajectory, std::pair(node.time, node.time))
-            .first->second;
-    begin = std::min(begin, node.time);
-    end = std::max(end, node.time);
-  }
-  double longest = 0.;
-  for (const auto& [trajectory, range] : ranges) {
-    longest = std::max(longest, static_cast<double>(range.second) * 1e-7 -
-                                    static_cast<double>(range.first) * 1e-7);
-  }
-  return longest;
-}
-
 // One line and one entry of the result for each window.
 absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
                            const Executor& executor,
                            StageProgress* const progress) {
   const absl::StatusOr<MapWithScans> query = ReadMapWithScans(FLAGS_query);
   if (!query.ok()) return query.status();
-  const double latest_start = std::max(
-      0., Duration(query->state.pose_graph.nodes) - FLAGS_first_seconds);
+  double longest = 0.;
+  for (const auto& [id, summary] : SummarizeTrajectories(query->state)) {
+    longest = std::max(longest, summary.duration_seconds);
+  }
+  const double latest_start = std::max(0., longest - FLAGS_first_seconds);
   const ProgressCallback on_progress = progress->Begin("windows");
   Json results = Json::array();
   int num_localized = 0;
@@ -154,10 +137,7 @@ absl::Status WriteCombinedMap(const Options& options, const Session& map,
 
 void PrintSummary(const Localization& result) {
   if (result.T_map_query) {
-    const Rigid2& pose = *result.T_map_query;
-    std::cout << absl::StrFormat(
-        "localized: x %.3f m, y %.3f m, yaw %.2f deg\n", pose.translation().x(),
-        pose.translation().y(), pose.rotation() * 180. / M_PI);
+    std::cout << "localized: " << FormatPose(*result.T_map_query) << "\n";
   } else {
     std::cout << "not localized: " << LocalizationVerdictName(result.verdict)
               << "\n";
@@ -174,13 +154,6 @@ void PrintSummary(const Localization& result) {
   for (const auto& [stage, seconds] : result.stage_seconds) {
     std::cout << absl::StrFormat("  %7.3f s %s\n", seconds, stage);
   }
-}
-
-void PrintPaths() {
-  for (const std::string& path : {FLAGS_result, FLAGS_output}) {
-    if (!path.empty()) std::cout << path << "\n";
-  }
-  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
 }
 
 // The files that the flags ask for.
@@ -225,6 +198,7 @@ absl::Status RunOnce(const Options& options,
       WriteFiles(options, map_session, *query, result, executor, progress);
   if (!status.ok()) return status;
   PrintSummary(result);
+  if (!FLAGS_result.empty()) std::cout << FLAGS_result << "\n";
   PrintPaths();
   return absl::OkStatus();
 }
@@ -238,30 +212,23 @@ absl::Status CheckInputs() {
 }
 
 absl::Status RunRelocalize() {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  if (absl::Status status =
-          RequireVerification(options->loop_closing, "relocalize");
-      !status.ok()) {
-    return status;
-  }
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
+  const absl::StatusOr<MapTask> task = MapTaskOfFlags("relocalize");
+  if (!task.ok()) return task.status();
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
   if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
   if (absl::Status status = CheckInputs(); !status.ok()) return status;
-  const Executor executor = MakeExecutor(*num_threads);
+  const Options& options = task->options;
   StageProgress progress;
   absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
-      options->loop_closing, FLAGS_map, executor,
+      options.loop_closing, FLAGS_map, task->executor,
       FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
       progress.Begin("read and describe the map"));
   if (!map.ok()) return map.status();
-  if (IsGiven("num_starts")) {
-    return RunManyStarts(*options, *map, executor, &progress);
-  }
-  return RunOnce(*options, *window, *std::move(map), executor, &progress);
+  return IsGiven("num_starts")
+             ? RunManyStarts(options, *map, task->executor, &progress)
+             : RunOnce(options, *window, *std::move(map), task->executor,
+                       &progress);
 }
 
 }  // namespace
@@ -273,8 +240,7 @@ Subcommand RelocalizeSubcommand() {
       "--map A.pbstream --query B.pbstream [--first_seconds N] "
       "[--result R.json] [--output M.pbstream] [--report DIR]",
       "Searches every submap of the query in the map, without a pose prior. "
-      "The "
-      "matches vote, and a pose is reported only where it is certain; else "
+      "The matches vote, and a pose is reported only where it is certain; else "
       "the result is \"localized\": false with the reason, and the exit code "
       "still 0. T_map_query is the pose of the query's map frame in the map "
       "frame [m, rad].\n\n"

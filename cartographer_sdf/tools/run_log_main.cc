@@ -13,15 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/live/host_options.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/log_run.h"
 #include "cartographer_sdf/recording/carmen_log.h"
-#include "cartographer_sdf/tools/allocator.h"
-#include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/run_log_report.h"
@@ -57,17 +54,6 @@ namespace {
 constexpr char kProgram[] = "cartographer_sdf_run_log";
 constexpr size_t kMaxMessageLength = 400;
 
-std::string OneLine(std::string text) {
-  for (char& c : text) {
-    if (absl::ascii_iscntrl(static_cast<unsigned char>(c))) c = ' ';
-  }
-  if (text.size() > kMaxMessageLength) {
-    text.resize(kMaxMessageLength);
-    text += "...";
-  }
-  return text;
-}
-
 // Cartographer stops the process where something is wrong with its files: that
 // is the world at fault, to be told in one line, and no reason for a core dump.
 class MessageSink : public google::LogSink {
@@ -75,7 +61,11 @@ class MessageSink : public google::LogSink {
   void send(const google::LogSeverity severity, const char* const,
             const char* const file, const int line, const ::tm* const,
             const char* const message, const size_t length) override {
-    const std::string text = OneLine(std::string(message, length));
+    std::string text = OneLine(std::string(message, length));
+    if (text.size() > kMaxMessageLength) {
+      text.resize(kMaxMessageLength);
+      text += "...";
+    }
     if (severity == google::GLOG_FATAL) {
       std::cerr << kProgram << ": " << text << std::endl;
       _exit(1);
@@ -87,13 +77,9 @@ class MessageSink : public google::LogSink {
   }
 };
 
-std::optional<double> GivenUnlessZero(const double value) {
-  if (value == 0.) return std::nullopt;
-  return value;
-}
-
-std::optional<std::string> GivenUnlessEmpty(const std::string& value) {
-  if (value.empty()) return std::nullopt;
+template <typename T>
+std::optional<T> GivenUnless(const T& absent, const T& value) {
+  if (value == absent) return std::nullopt;
   return value;
 }
 
@@ -127,9 +113,9 @@ absl::StatusOr<LogRunOptions> OptionsOfFlags() {
       LoadHostOptions(*directories, FLAGS_configuration_basename);
   if (!host.ok()) return host.status();
   options.host = *host;
-  options.map_path = GivenUnlessEmpty(FLAGS_map);
-  options.output_path = GivenUnlessEmpty(FLAGS_output);
-  options.real_time_factor = GivenUnlessZero(FLAGS_real_time_factor);
+  options.map_path = GivenUnless(std::string(), FLAGS_map);
+  options.output_path = GivenUnless(std::string(), FLAGS_output);
+  options.real_time_factor = GivenUnless(0., FLAGS_real_time_factor);
   return options;
 }
 
@@ -150,32 +136,24 @@ absl::StatusOr<Recording> RecordingOfFlags() {
   return Cut(*recording, FLAGS_start, duration);
 }
 
-// The report draws the map of a file; one of its own where there is no output.
-class ReportedMap {
- public:
-  explicit ReportedMap(LogRunOptions* const options) {
-    if (options->output_path.has_value() || FLAGS_report.empty()) {
-      path_ = options->output_path.value_or("");
-      return;
+absl::Status RunAndReport(const Recording& recording,
+                          const LogRunOptions& options) {
+  absl::StatusOr<LogRunResult> result;
+  {
+    Progress progress("run");
+    result = RunLog(recording, options, progress.Callback());
+  }
+  if (!result.ok()) return result.status();
+  if (!FLAGS_report.empty()) {
+    if (absl::Status status = WriteRunReport(
+            FLAGS_report, FLAGS_log, *options.output_path, options, *result);
+        !status.ok()) {
+      return status;
     }
-    path_ = (std::filesystem::temp_directory_path() /
-             absl::StrCat(kProgram, "-", getpid(), ".pbstream"))
-                .string();
-    is_temporary_ = true;
-    options->output_path = path_;
   }
-  ReportedMap(const ReportedMap&) = delete;
-  ReportedMap& operator=(const ReportedMap&) = delete;
-  ~ReportedMap() {
-    std::error_code ignored;
-    if (is_temporary_) std::filesystem::remove(path_, ignored);
-  }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  bool is_temporary_ = false;
-};
+  std::cout << FormatRunSummary(*result);
+  return absl::OkStatus();
+}
 
 absl::Status RunLogOfFlags() {
   if (!(FLAGS_start >= 0.) || !(FLAGS_duration >= 0.)) {
@@ -188,22 +166,17 @@ absl::Status RunLogOfFlags() {
   if (!options.ok()) return options.status();
   const absl::StatusOr<Recording> recording = RecordingOfFlags();
   if (!recording.ok()) return recording.status();
-  const ReportedMap map(&*options);
-  absl::StatusOr<LogRunResult> result;
-  {
-    Progress progress("run");
-    result = RunLog(*recording, *options, progress.Callback());
+  if (FLAGS_report.empty() || options->output_path) {
+    return RunAndReport(*recording, *options);
   }
-  if (!result.ok()) return result.status();
-  if (!FLAGS_report.empty()) {
-    if (absl::Status status = WriteRunReport(FLAGS_report, FLAGS_log,
-                                             map.path(), *options, *result);
-        !status.ok()) {
-      return status;
-    }
-  }
-  std::cout << FormatRunSummary(*result);
-  return absl::OkStatus();
+  // The report draws the map of a file: one of its own.
+  options->output_path = (std::filesystem::temp_directory_path() /
+                          absl::StrCat(kProgram, "-", getpid(), ".pbstream"))
+                             .string();
+  const absl::Status status = RunAndReport(*recording, *options);
+  std::error_code ignored;
+  std::filesystem::remove(*options->output_path, ignored);
+  return status;
 }
 
 Subcommand RunLogCommand() {

@@ -12,11 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/whole_file.h"
-#include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/report/html_report.h"
 #include "cartographer_sdf/report/json.h"
-#include "cartographer_sdf/report/map_painter.h"
-#include "cartographer_sdf/report/map_picture.h"
+#include "cartographer_sdf/report/reports.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -166,53 +163,6 @@ std::string NodesCsv(const LogRunResult& result) {
   return csv;
 }
 
-// Those that were injected, between the origins of their submaps.
-void DrawClosures(const std::vector<ClosureRecord>& closures,
-                  const std::map<SubmapId, Rigid2>& submap_poses,
-                  const PixelFrame& frame, Picture* const picture) {
-  for (const ClosureRecord& record : closures) {
-    const auto reference = submap_poses.find(record.pair.reference);
-    const auto query = submap_poses.find(record.pair.query);
-    if (record.status == ClosureStatus::kInGraph &&
-        reference != submap_poses.end() && query != submap_poses.end()) {
-      DrawLink(reference->second.translation(), query->second.translation(),
-               frame, kClosureColor, picture);
-    }
-  }
-}
-
-// The map at the end, with the paths of its trajectories and the closures.
-absl::StatusOr<ReportedPicture> PaintMap(
-    const std::string& map, const std::vector<ClosureRecord>& closures) {
-  const absl::StatusOr<MapState> state = ReadMap(map);
-  if (!state.ok()) return state.status();
-  const PoseGraph& pose_graph = state->pose_graph;
-  std::vector<PlacedGrid> grids;
-  for (const auto& [id, submap] : state->submaps) {
-    const auto pose = pose_graph.submap_poses.find(id);
-    if (pose != pose_graph.submap_poses.end()) {
-      grids.push_back({submap.geometry, pose->second});
-    }
-  }
-  MapPainter painter(grids, kMaxPixels);
-  const absl::StatusOr<MapState> read =
-      ReadMap(map, {[&](const SubmapId& id, const SubmapSummary&,
-                        const OccupancyGrid& grid) {
-                const auto pose = pose_graph.submap_poses.find(id);
-                if (pose != pose_graph.submap_poses.end()) {
-                  painter.AddSubmap(grid, pose->second);
-                }
-              }});
-  if (!read.ok()) return read.status();
-  Picture picture = painter.Paint();
-  DrawMetricGrid(painter.frame(), &picture);
-  DrawPaths(pose_graph, painter.frame(), &picture);
-  DrawClosures(closures, pose_graph.submap_poses, painter.frame(), &picture);
-  DrawScaleBar(painter.frame(), &picture);
-  return ReportedPicture{"The map at the end; closures of the searcher in red",
-                         picture.EncodePng()};
-}
-
 // Names and what is to be said of them.
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
@@ -299,13 +249,10 @@ std::vector<double> InMilliseconds(std::vector<double> seconds) {
 }
 
 HistogramPlot LatencyHistogram(const std::vector<double>& seconds) {
-  HistogramPlot latency;
-  latency.title = "Time of AddSensorData";
-  latency.x.label = "ms";
   const double longest = kMilliseconds * Quantile(seconds, 0.99);
-  latency.x.range = {0., std::max(longest, 1e-3)};
-  latency.series = {{"calls", InMilliseconds(seconds)}};
-  return latency;
+  return {"Time of AddSensorData",
+          {"ms", {{0., std::max(longest, 1e-3)}}},
+          {{"calls", InMilliseconds(seconds)}}};
 }
 
 std::vector<ReportedClosure> ReportedClosures(
@@ -318,6 +265,7 @@ std::vector<ReportedClosure> ReportedClosures(
     reported.match.inliers.resize(static_cast<size_t>(record.num_inliers));
     reported.accepted = record.status == ClosureStatus::kInGraph;
     reported.reason = ClosureStatusName(record.status);
+    if (reported.accepted) reported.link = kClosureColor;
     closures.push_back(std::move(reported));
   }
   return closures;
@@ -337,21 +285,29 @@ absl::Status WriteRunReport(const std::string& directory,
                             const std::string& log, const std::string& map,
                             const LogRunOptions& options,
                             const LogRunResult& result) {
-  absl::StatusOr<ReportedPicture> picture = PaintMap(map, result.closures);
-  if (!picture.ok()) return picture.status();
+  const absl::StatusOr<MapState> state = ReadMap(map);
+  if (!state.ok()) return state.status();
   ReportContent content;
-  content.title =
-      absl::StrCat("Run of ", std::filesystem::path(log).filename().string());
+  content.title = "Run of " + FileName(log);
   content.subtitle = result.summary.has_value()
                          ? "Cartographer with the searcher around it."
                          : "Cartographer alone.";
   content.summary = SummaryRows(result);
-  content.maps.push_back(*std::move(picture));
   content.closures = ReportedClosures(result.closures);
   content.histograms.push_back(LatencyHistogram(result.sensor_seconds));
   content.options = FormatLiveOptions(options.live);
+  ReportOptions report;
+  report.map_picture_pixels = kMaxPixels;
+  report.max_closure_pictures = 0;
+  absl::Status status = DrawPictures(
+      {{"The map at the end; closures of the searcher in red", &*state,
+        &state->pose_graph, /*shows_links=*/true}},
+      [&map](const SubmapCallback& on_submap) {
+        return ReadMap(map, {on_submap, {}}).status();
+      },
+      report, &content);
   // Makes the directory, too.
-  absl::Status status = WriteReport(directory, content, ReportOptions());
+  if (status.ok()) status = WriteReport(directory, content);
   const std::filesystem::path path(directory);
   if (status.ok()) {
     status = WriteWholeFile((path / "nodes.csv").string(), NodesCsv(result));

@@ -4,21 +4,30 @@
 #include "cartographer_sdf/tools/stages.h"
 
 #include <iostream>
-#include <utility>
+#include <map>
+#include <optional>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "cartographer_sdf/tools/flags.h"
 
 namespace cartographer_sdf {
 
-StageCallback StageProgress::Callback() {
-  return [this](const std::string& stage) { return Begin(stage); };
-}
-
-ProgressCallback StageProgress::Begin(const std::string& stage) {
-  // The line of the stage before goes first.
-  progress_.reset();
-  progress_ = std::make_unique<Progress>(stage);
-  return progress_->Callback();
+absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
+  absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  if (options->loop_closing.recognition.match.method != Method::kSdf) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        subcommand,
+        " needs match.method = \"sdf\": the number of inliers is no "
+        "verification"));
+  }
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  absl::StatusOr<std::set<int>> frozen = FrozenTrajectoriesOfFlags();
+  if (!frozen.ok()) return frozen.status();
+  return MapTask{*std::move(options), MakeExecutor(*num_threads),
+                 *std::move(frozen)};
 }
 
 absl::StatusOr<DescribedMap> DescribeMapOfFlags(
@@ -40,13 +49,57 @@ absl::StatusOr<DescribedMap> DescribeMapOfFlags(
   return std::move(remembered->map);
 }
 
-absl::Status RequireVerification(const LoopClosingOptions& options,
-                                 const std::string& subcommand) {
-  if (options.recognition.match.method == Method::kSdf) return absl::OkStatus();
-  return absl::InvalidArgumentError(
-      subcommand +
-      " needs match.method = \"sdf\": the number of inliers is no "
-      "verification");
+absl::Status WriteMapAndReport(
+    const PoseGraph& pose_graph,
+    const std::function<absl::Status(const SubmapsReader&)>& write_report,
+    StageProgress* const progress) {
+  std::optional<PreparedMap> output;
+  const auto read_and_write =
+      [&](const SubmapCallback& on_submap) -> absl::Status {
+    if (FLAGS_output.empty()) {
+      return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
+          .status();
+    }
+    absl::StatusOr<PreparedMap> map =
+        PrepareMap(FLAGS_input, FLAGS_output, pose_graph, {on_submap, {}},
+                   progress->Begin("write"));
+    if (map.ok()) output.emplace(*std::move(map));
+    return map.status();
+  };
+  absl::Status status;
+  if (!FLAGS_report.empty()) {
+    status = write_report(read_and_write);
+  } else if (!FLAGS_output.empty()) {
+    status = read_and_write({});
+  }
+  return status.ok() && output ? output->Commit() : status;
+}
+
+void PrintStages(const std::vector<std::pair<std::string, double>>& seconds) {
+  for (const auto& [stage, duration] : seconds) {
+    std::cout << absl::StrFormat("  %7.2f s %s\n", duration, stage);
+  }
+}
+
+void PrintStatuses(const std::string& prefix,
+                   const std::vector<Closure>& closures) {
+  std::map<ClosureStatus, int> counts;
+  for (const Closure& closure : closures) ++counts[closure.status];
+  for (const auto& [status, count] : counts) {
+    std::cout << absl::StrFormat("  %5d %s%s\n", count, prefix,
+                                 ClosureStatusName(status));
+  }
+}
+
+void PrintConvergence(const std::vector<OptimizationSummary>& summaries) {
+  if (summaries.empty() || summaries.back().converged) return;
+  std::cout << "The optimisation did not converge: " << summaries.back().message
+            << "\n";
+}
+
+void PrintPaths() {
+  if (!FLAGS_output.empty()) std::cout << FLAGS_output << "\n";
+  if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
 }
 
 }  // namespace cartographer_sdf

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The subcommands of the program. To add one: a file with its function
-// "Subcommand Foo()", which names its flags and what runs; and its name in the
-// table of subcommand.cc.
+// The subcommands of the program, and its command line: gflags holds the flags,
+// but its own parser exits with code 1 and accepts every flag that is linked
+// in. To add a subcommand: a file with its function "Subcommand Foo()", which
+// names its flags and what runs; and its name in AllSubcommands.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
 #define CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
@@ -12,9 +13,16 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "cartographer_sdf/tools/usage_error.h"
 
 namespace cartographer_sdf {
+
+// The user is at fault, not the world: flags that do not go together, numbers
+// out of range.
+[[nodiscard]] absl::Status UsageError(const std::string& message);
+[[nodiscard]] bool IsUsageError(const absl::Status& status);
+
+// Control characters become spaces.
+[[nodiscard]] std::string OneLine(std::string text);
 
 struct Subcommand {
   // Empty where the program has one command only.
@@ -45,6 +53,28 @@ struct Subcommand {
 
 // In the order of the help.
 [[nodiscard]] std::vector<Subcommand> AllSubcommands();
+
+// Sets the flags of the subcommand: "--flag value", "--flag=value", with one
+// dash or two, "--flag" and "--noflag" for booleans. Returns a UsageError for
+// everything that is not exactly that, and for missing required flags.
+[[nodiscard]] absl::Status SetFlags(const Subcommand& subcommand,
+                                    const std::vector<std::string>& arguments);
+
+// One command, with its flags. Messages go to stdout and stderr; returns the
+// exit code.
+[[nodiscard]] int RunSubcommand(const Subcommand& subcommand,
+                                const std::vector<std::string>& arguments);
+
+// The whole program, of AllSubcommands, in the same way.
+[[nodiscard]] int RunProgram(const std::vector<std::string>& arguments);
+
+// Makes the allocator of this process keep freed memory for what is allocated
+// next; to be called before there are threads. The field of a submap and what
+// is made of it are arrays of megabytes, freed before the next submap. Glibc
+// gives such memory back, and the system clears every page that it hands out
+// anew: half and more of the time that it takes to describe a large submap.
+// Does nothing where the C library is another one.
+void KeepFreedMemory();
 
 }  // namespace cartographer_sdf
 

@@ -5,7 +5,7 @@
 // stage,milliseconds (means over the submaps of a map).
 //
 // usage: measure_describing MAP.pbstream [give_back]
-//   give_back  leaves the allocator as it is, see tools/allocator.h
+//   give_back  leaves the allocator as it is, see tools/subcommand.h
 
 #include <chrono>
 #include <cstdlib>
@@ -21,7 +21,7 @@
 #include "cartographer_sdf/field/distance_field.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place/place.h"
-#include "cartographer_sdf/tools/allocator.h"
+#include "cartographer_sdf/tools/subcommand.h"
 
 namespace cartographer_sdf {
 namespace {

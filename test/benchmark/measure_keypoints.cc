@@ -19,10 +19,10 @@
 #include "cartographer_sdf/evaluation/keypoint_repeatability.h"
 #include "cartographer_sdf/evaluation/match_score.h"
 #include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place/place.h"
-#include "cartographer_sdf/report/picture.h"
-#include "cartographer_sdf/report/submap_pictures.h"
+#include "cartographer_sdf/report/feature_pictures.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -50,17 +50,9 @@ absl::Status Draw(const Place& place, const std::string& path) {
     distance(k) = 1e-3f * static_cast<float>(surface.cells(k).distance);
     observed(k) = surface.cells(k).observed;
   }
-  std::vector<MarkedKeypoint> keypoints;
-  for (const Feature& feature : place.features.features) {
-    const KeypointKind kind = feature.keypoint.kind;
-    keypoints.push_back({feature.keypoint.position,
-                         kind == KeypointKind::kMaximum ? KeypointMark::kMaximum
-                         : kind == KeypointKind::kMinimum
-                             ? KeypointMark::kMinimum
-                             : KeypointMark::kSaddle});
-  }
-  return DrawDistanceField(surface.geometry, distance, observed, keypoints, 500)
-      .WritePng(path);
+  const Picture picture = DrawDistanceField(
+      {surface.geometry, distance, observed}, place.features.features, 500);
+  return WriteWholeFile(path, picture.EncodePng());
 }
 
 absl::Status Measure(const std::string& map_path, const std::string& truth_path,

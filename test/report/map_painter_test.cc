@@ -121,7 +121,6 @@ TEST(MapPainterTest, SurvivesDegenerateMaps) {
                  Color(), &picture);
   DrawTrajectory({}, painter.frame(), Color(), &picture);
   DrawLink(lost.translation(), {0., 0.}, painter.frame(), Color(), &picture);
-  DrawLabel(far.translation(), "far", painter.frame(), &picture);
 }
 
 TEST(MapPainterTest, OverlaysLieWhereTheirPointsAre) {

@@ -3,17 +3,12 @@
 
 #include "cartographer_sdf/report/picture.h"
 
-#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/decoded_png.h"
-#include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf::picture_test {
 namespace {
 
-using ::testing::HasSubstr;
-
-constexpr Color kWhite{1., 1., 1.};
 constexpr Color kRed{1., 0., 0.};
 
 TEST(PictureTest, PngHoldsThePixels) {
@@ -71,14 +66,12 @@ TEST(PictureTest, EqualDrawingsGiveEqualBytes) {
   EXPECT_EQ(draw(), draw());
 }
 
-TEST(PictureTest, WritesFilesOrSaysWhyNot) {
-  const Picture picture(3, 3, kRed);
-  const testing::TemporaryDirectory directory;
-  ASSERT_TRUE(picture.WritePng(directory.File("a.png")).ok());
-  EXPECT_EQ(directory.Read("a.png"), picture.EncodePng());
-  const absl::Status status = picture.WritePng("/nowhere/a.png");
-  EXPECT_FALSE(status.ok());
-  EXPECT_THAT(std::string(status.message()), HasSubstr("/nowhere/a.png"));
+TEST(RoundStepTest, IsOneTwoOrFive) {
+  EXPECT_DOUBLE_EQ(RoundStep(1.), 1.);
+  EXPECT_DOUBLE_EQ(RoundStep(1.01), 2.);
+  EXPECT_DOUBLE_EQ(RoundStep(0.003), 0.005);
+  EXPECT_DOUBLE_EQ(RoundStep(7e7), 1e8);
+  EXPECT_DOUBLE_EQ(RoundStep(1e-3), 1e-3);
 }
 
 TEST(PixelFrameTest, GoesUpWithYAndBack) {

@@ -32,58 +32,6 @@ int CountPixels(const DecodedPng& png, const Rgb& rgb) {
                     [&rgb](const Rgb& pixel) { return IsColor(pixel, rgb); }));
 }
 
-// Distance to a wall along y at x = 1 m of the grid frame: obstacle left of it.
-Eigen::ArrayXXf HalfPlane(const CellGeometry& geometry) {
-  Eigen::ArrayXXf distance(geometry.size.x(), geometry.size.y());
-  for (int i = 0; i < geometry.size.x(); ++i) {
-    distance.row(i) =
-        static_cast<float>(geometry.CellsToGrid({i, 0.}).x() - 1.);
-  }
-  return distance;
-}
-
-TEST(DrawDistanceFieldTest, ColorsSidesContoursAndUnknown) {
-  const CellGeometry geometry = TestGeometry();
-  BoolArray observed = BoolArray::Constant(100, 80, true);
-  observed.rightCols(20).setConstant(false);
-  // 5 m x 4 m at 100 pixels per metre.
-  const DecodedPng png = DecodePng(
-      DrawDistanceField(geometry, HalfPlane(geometry), observed, {}, 500)
-          .EncodePng());
-  ASSERT_EQ(png.width, 500);
-  ASSERT_EQ(png.height, 400);
-  const Rgb free = png.At(320, 300);
-  EXPECT_GT(free.blue, free.red + 50);
-  const Rgb inside = png.At(30, 300);
-  EXPECT_GT(inside.red, inside.blue + 50);
-  // The wall between the pixels 99 and 100, a contour between 149 and 150.
-  EXPECT_EQ(png.At(99, 300), (Rgb{0, 0, 0}));
-  EXPECT_NE(png.At(98, 300), (Rgb{0, 0, 0}));
-  EXPECT_NE(png.At(100, 300), (Rgb{0, 0, 0}));
-  EXPECT_LT(png.At(149, 300).blue, png.At(148, 300).blue - 20);
-  EXPECT_LT(png.At(149, 300).blue, png.At(150, 300).blue - 20);
-  // The unobserved metre on top is hatched grey.
-  const Rgb unknown = png.At(321, 40);
-  EXPECT_EQ(unknown.red, unknown.blue);
-  EXPECT_NE(png.At(320, 40), png.At(321, 40));
-}
-
-TEST(DrawDistanceFieldTest, MarksKeypointsByKind) {
-  const CellGeometry geometry = TestGeometry();
-  const std::vector<MarkedKeypoint> keypoints = {
-      {{0., 0.}, KeypointMark::kMaximum},
-      {{1., 0.}, KeypointMark::kSaddle},
-      {{1., 1.}, KeypointMark::kMinimum}};
-  const DecodedPng png = DecodePng(
-      DrawDistanceField(geometry, HalfPlane(geometry),
-                        BoolArray::Constant(100, 80, true), keypoints, 500)
-          .EncodePng());
-  // The submap's origin is at (2.5, 2) m of the grid frame.
-  EXPECT_TRUE(IsColor(png.At(250, 200), Rgb{230, 26, 26}));
-  EXPECT_TRUE(IsColor(png.At(350, 200), Rgb{26, 179, 51}));
-  EXPECT_TRUE(IsColor(png.At(350, 100), Rgb{255, 230, 26}));
-}
-
 class DrawMatchedPairTest : public ::testing::Test {
  protected:
   const OccupancyGrid room_ = RectangularRoom(4., 3., 0.1, TestGeometry());
@@ -146,18 +94,6 @@ TEST_F(DrawMatchedPairTest, SurvivesEmptyGrids) {
                 64);
     }
   }
-}
-
-TEST(DrawOccupancyGridTest, ShowsProbability) {
-  OccupancyGrid grid = UnknownGrid(CellGeometry{{2, 1}, 0.05, Rigid2()});
-  grid.known(0, 0) = true;
-  grid.probability(0, 0) = 0.2f;
-  const DecodedPng png = DecodePng(DrawOccupancyGrid(grid, 20).EncodePng());
-  EXPECT_EQ(png.width, 20);
-  EXPECT_EQ(png.height, 10);
-  EXPECT_EQ(png.At(3, 3), (Rgb{204, 204, 204}));
-  EXPECT_EQ(png.At(11, 5), (Rgb{168, 168, 168}));
-  EXPECT_EQ(png.At(12, 5), (Rgb{199, 199, 199}));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "cartographer_sdf/report/round_step.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/markup_reader.h"
@@ -20,14 +19,6 @@ using ::testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-TEST(RoundStepTest, IsOneTwoOrFive) {
-  EXPECT_DOUBLE_EQ(RoundStep(1.), 1.);
-  EXPECT_DOUBLE_EQ(RoundStep(1.01), 2.);
-  EXPECT_DOUBLE_EQ(RoundStep(0.003), 0.005);
-  EXPECT_DOUBLE_EQ(RoundStep(7e7), 1e8);
-  EXPECT_DOUBLE_EQ(RoundStep(1e-3), 1e-3);
-}
 
 TEST(CountInBinsTest, CountsEachValueOnce) {
   EXPECT_THAT(CountInBins({0., 0.24, 0.25, 0.99, 1.}, 0., 1., 4),

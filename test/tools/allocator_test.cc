@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/tools/allocator.h"
-
 #include <cstdlib>
 #include <vector>
 
+#include "cartographer_sdf/tools/subcommand.h"
 #include "gtest/gtest.h"
 
 #ifdef __GLIBC__

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"

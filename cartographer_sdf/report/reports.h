@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The pages of --report, the table of audit, and what the pages about maps
+// share: pictures, and lines of the summary.
+
+#ifndef CARTOGRAPHER_SDF_REPORT_REPORTS_H_
+#define CARTOGRAPHER_SDF_REPORT_REPORTS_H_
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "cartographer_sdf/apps/audit.h"
+#include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/apps/merge.h"
+#include "cartographer_sdf/closing/torn_submaps.h"
+#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/pose_graph/optimization.h"
+#include "cartographer_sdf/report/html_report.h"
+#include "cartographer_sdf/report/map_painter.h"
+#include "cartographer_sdf/report/picture.h"
+#include "cartographer_sdf/report/report_options.h"
+
+namespace cartographer_sdf {
+
+// A line between two submaps, from where the robot was to where it was.
+struct SubmapLink {
+  SubmapId from;
+  SubmapId to;
+  Color color;
+};
+
+// A whole map with the paths that were driven: the submaps of `state` where
+// `pose_graph` has them, which both outlive it.
+struct MapPicture {
+  std::string caption;
+  const MapState* state = nullptr;
+  const PoseGraph* pose_graph = nullptr;
+  // Whether the links of the page's closures are drawn, the first one last, and
+  // others below them.
+  bool shows_links = false;
+  std::vector<SubmapLink> other_links = {};
+  // Of several maps that are laid over each other, each in its colour: which
+  // one a trajectory is of. Empty where all are of one map.
+  std::map<int, int> layers = {};
+};
+
+// Reads the map that a report is about and calls back for each of its submaps,
+// as ReadMap() and PrepareMap() do.
+using SubmapsReader = std::function<absl::Status(const SubmapCallback&)>;
+
+// The submaps where `pose_graph` has them.
+[[nodiscard]] std::vector<PlacedGrid> PlaceGrids(const MapState& state,
+                                                 const PoseGraph& pose_graph);
+
+// Where the nodes of each trajectory are, in their order.
+[[nodiscard]] std::map<int, std::vector<Eigen::Vector2d>> PathsOf(
+    const PoseGraph& pose_graph);
+
+// Adds the pictures of maps, and those of the page's closures, as many as the
+// options ask for. Calls the reader once.
+[[nodiscard]] absl::Status DrawPictures(const std::vector<MapPicture>& maps,
+                                        const SubmapsReader& read_submaps,
+                                        const ReportOptions& options,
+                                        ReportContent* content);
+
+// Those that were not accepted first, then the least certain: where one should
+// look.
+void SortByInterest(std::vector<ReportedClosure>* closures);
+
+[[nodiscard]] std::string FileName(const std::string& path);
+[[nodiscard]] std::string FormatPose(const Rigid2& pose);
+[[nodiscard]] std::string FormatError(const ConstraintError& error);
+
+// What the page says of the last of some optimisations, if there are any.
+void AddOptimization(const OptimizationOptions& options,
+                     const std::vector<OptimizationSummary>& summaries,
+                     ReportContent* content);
+void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
+                    ReportContent* content);
+
+// --- The pages, in request.directory. ---
+
+// The map before and after, every closure with its evidence, residuals, and the
+// time that the stages took. Calls the reader once. `input` is the map's name.
+[[nodiscard]] absl::Status WriteCloseLoopsReport(
+    const ReportRequest& request, const std::string& input,
+    const LoopClosingResult& result, const SubmapsReader& read_submaps);
+
+// The map before and after, and each group with a doubtful constraint, drawn at
+// the constraints' own pose, with its evidence. Calls the reader once.
+[[nodiscard]] absl::Status WriteAuditReport(const ReportRequest& request,
+                                            const std::string& input,
+                                            const Audit& audit,
+                                            const SubmapsReader& read_submaps);
+
+// CSV, a line for each inter-submap constraint in the file's order: its number
+// among all constraints of the file, its ends and pose (submap <- node), the
+// group that it was judged with (numbered from 0) and the pose of that
+// (reference <- query), verdict and evidence. What an unchecked constraint has
+// no value of is empty.
+[[nodiscard]] absl::Status WriteAuditTable(const std::string& path,
+                                           const Audit& audit);
+
+// Both maps overlaid where the query was found, or would best fit; the matches,
+// and where they contradict.
+[[nodiscard]] absl::Status WriteRelocalizationReport(
+    const ReportRequest& request, const Session& map, const Session& query,
+    const Localization& result, const ProgressCallback& on_progress);
+
+[[nodiscard]] absl::Status WriteMergingReport(
+    const ReportRequest& request, const MergingResult& result,
+    const ProgressCallback& on_progress);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_REPORT_REPORTS_H_
