@@ -175,20 +175,19 @@ constexpr char kPictureLegend[] =
     "either in the free space of the other "
     "<span class=\"key\" style=\"background:#ff9900\"></span>orange.</p>\n";
 
-std::string RenderClosures(const std::string& heading,
-                           const std::vector<ReportedClosure>& closures) {
-  if (closures.empty()) return "";
+std::string RenderClosures(const ReportContent& content) {
+  if (content.closures.empty()) return "";
   std::string rows;
-  int num_left_out = 0;
+  int num_left_out = content.num_undrawn;
   size_t num_bytes = 0;
-  for (const ReportedClosure& closure : closures) {
+  for (const ReportedClosure& closure : content.closures) {
     const bool fits = num_bytes + closure.png.size() <= kMaxClosurePictureBytes;
     if (fits) num_bytes += closure.png.size();
     num_left_out += !fits;
     rows += RenderClosure(closure, fits && !closure.png.empty());
   }
   return Section(
-      heading,
+      content.closures_heading,
       absl::StrCat(
           num_bytes > 0 ? kPictureLegend : "",
           num_left_out > 0
@@ -252,8 +251,7 @@ std::string RenderReport(const ReportContent& content) {
       title, "</title>\n<style>", kStyle, "</style>\n</head>\n<body>\n<header>",
       "<h1>", title, "</h1>\n<p class=\"subtitle\">",
       EscapeMarkup(content.subtitle), "</p>\n</header>\n<main>\n",
-      RenderSummary(content), Columns("Map", maps),
-      RenderClosures(content.closures_heading, content.closures),
+      RenderSummary(content), Columns("Map", maps), RenderClosures(content),
       Columns("Residuals", histograms), RenderStages(content.stages),
       RenderOptions(content.options), "</main>\n</body>\n</html>\n");
 }

@@ -49,6 +49,8 @@ struct ReportContent {
   std::vector<ReportedPicture> maps;
   std::string closures_heading = "Closures";
   std::vector<ReportedClosure> closures;
+  // Closures beyond the number that was to be drawn; the page says so.
+  int num_undrawn = 0;
   std::vector<HistogramPlot> histograms;
   // Stages and the seconds that they took.
   std::vector<std::pair<std::string, double>> stages;

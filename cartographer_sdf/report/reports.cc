@@ -141,6 +141,9 @@ absl::Status DrawPictures(const std::vector<MapPicture>& maps,
   std::vector<ReportedClosure>& closures = content->closures;
   const size_t num_pairs = std::min(
       closures.size(), static_cast<size_t>(options.max_closure_pictures));
+  if (num_pairs > 0) {
+    content->num_undrawn = static_cast<int>(closures.size() - num_pairs);
+  }
   std::set<SubmapId> wanted;
   for (size_t k = 0; k < num_pairs; ++k) {
     wanted.insert(closures[k].match.pair.reference);

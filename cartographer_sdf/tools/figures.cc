@@ -9,7 +9,6 @@
 #include <iostream>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,77 +152,43 @@ absl::StatusOr<MatchRow> ChooseMatch() {
                            });
 }
 
-// A map, and the grids of some of its submaps.
-struct MapWithGrids {
+// A map with all of its grids.
+struct LoadedMap {
   MapState state;
   std::map<SubmapId, OccupancyGrid> grids;
 };
 
-absl::StatusOr<MapWithGrids> ReadWithGrids(
-    const std::string& path, const std::set<SubmapId>& wanted,
-    const ProgressCallback& on_progress) {
-  MapWithGrids map;
-  absl::StatusOr<MapState> state =
-      ReadMap(path,
-              {[&](const SubmapId& id, const SubmapSummary&,
-                   const OccupancyGrid& grid) {
-                if (wanted.count(id) > 0) map.grids.emplace(id, grid);
-              }},
-              on_progress);
+absl::StatusOr<LoadedMap> LoadMap(const std::string& path) {
+  Progress progress("read");
+  LoadedMap map;
+  absl::StatusOr<MapState> state = ReadMap(
+      path,
+      {[&map](const SubmapId& id, const SubmapSummary&,
+              const OccupancyGrid& grid) { map.grids.emplace(id, grid); }},
+      progress.Callback());
   if (!state.ok()) return state.status();
   map.state = *std::move(state);
-  for (const SubmapId& id : wanted) {
-    if (map.grids.count(id) == 0 ||
-        map.state.pose_graph.submap_poses.count(id) == 0) {
-      return absl::NotFoundError(
-          absl::StrCat(path, " has no submap ", id.trajectory, ",", id.index));
-    }
-  }
   return map;
 }
 
-// Two submaps, and the map that the reference is of.
-struct SubmapPair {
-  SubmapId reference_id;
-  SubmapId query_id;
-  MapWithGrids map;
-  // None where the query is of the same map.
-  std::optional<MapWithGrids> query_map;
-
-  [[nodiscard]] const OccupancyGrid& reference() const {
-    return map.grids.at(reference_id);
+absl::Status CheckHas(const std::string& path, const LoadedMap& map,
+                      const SubmapId& id) {
+  if (map.grids.count(id) > 0 &&
+      map.state.pose_graph.submap_poses.count(id) > 0) {
+    return absl::OkStatus();
   }
-  [[nodiscard]] const OccupancyGrid& query() const {
-    return (query_map ? *query_map : map).grids.at(query_id);
-  }
-};
-
-absl::StatusOr<SubmapPair> ReadPair(const SubmapId& reference_id,
-                                    const SubmapId& query_id,
-                                    const ProgressCallback& on_progress) {
-  SubmapPair pair{reference_id, query_id, {}, {}};
-  std::set<SubmapId> wanted = {reference_id};
-  if (FLAGS_query.empty()) {
-    wanted.insert(query_id);
-  } else {
-    absl::StatusOr<MapWithGrids> query =
-        ReadWithGrids(FLAGS_query, {query_id}, on_progress);
-    if (!query.ok()) return query.status();
-    pair.query_map = *std::move(query);
-  }
-  absl::StatusOr<MapWithGrids> map =
-      ReadWithGrids(FLAGS_input, wanted, on_progress);
-  if (!map.ok()) return map.status();
-  pair.map = *std::move(map);
-  return pair;
+  return absl::NotFoundError(
+      absl::StrCat(path, " has no submap ", id.trajectory, ",", id.index));
 }
 
 absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
-                                const SubmapPair& pair) {
+                                const MatchRow& pair,
+                                const OccupancyGrid& reference_grid,
+                                const OccupancyGrid& query_grid) {
   std::optional<Place> reference =
-      DescribePlace(stages.place, pair.reference_id, pair.reference());
+      DescribePlace(stages.place, pair.reference, reference_grid);
   std::optional<Place> query =
-      DescribePlace(stages.place, pair.query_id, pair.query());
+      DescribePlace(stages.place, pair.query, query_grid);
   std::optional<Match> match;
   if (reference && query) {
     if (stages.recognition.match.method == Method::kSdf) {
@@ -234,94 +199,93 @@ absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
   }
   if (!match) {
     return absl::NotFoundError(
-        absl::StrCat("submaps ", pair.reference_id.trajectory, ",",
-                     pair.reference_id.index, " and ", pair.query_id.trajectory,
-                     ",", pair.query_id.index, " do not match"));
+        absl::StrCat("submaps ", pair.reference.trajectory, ",",
+                     pair.reference.index, " and ", pair.query.trajectory, ",",
+                     pair.query.index, " do not match"));
   }
   return *std::move(match);
 }
 
 // Within one map, both lie where the map has them: the lines show by how much
 // it is off. Another session is put where the match says.
-absl::StatusOr<Picture> DrawPairOnMap(const FieldOptions& field,
-                                      const SubmapPair& pair,
-                                      const Match& match,
-                                      const ProgressCallback& on_progress) {
-  const PoseGraph& pose_graph = pair.map.state.pose_graph;
-  ShownSubmap reference{*MakeDistanceField(field, pair.reference()),
-                        pose_graph.submap_poses.at(pair.reference_id),
-                        PathsOf(pose_graph)};
-  ShownSubmap query{*MakeDistanceField(field, pair.query()),
+Picture DrawPairOnMap(const FieldOptions& field, const LoadedMap& map,
+                      const LoadedMap& query_map, const Match& match) {
+  const PoseGraph& pose_graph = map.state.pose_graph;
+  const SubmapId& query_id = match.pair.query;
+  const OccupancyGrid& query_grid = query_map.grids.at(query_id);
+  const ShownSubmap reference{
+      *MakeDistanceField(field, map.grids.at(match.pair.reference)),
+      pose_graph.submap_poses.at(match.pair.reference), PathsOf(pose_graph)};
+  ShownSubmap query{*MakeDistanceField(field, query_grid),
                     reference.T_map_submap * match.pair.T_reference_query,
                     {}};
-  std::vector<PlacedGrid> grids = PlaceGrids(pair.map.state, pose_graph);
-  if (pair.query_map) {
-    const PoseGraph& query_graph = pair.query_map->state.pose_graph;
+  std::vector<PlacedGrid> grids = PlaceGrids(map.state, pose_graph);
+  if (&map == &query_map) {
+    query.T_map_submap = pose_graph.submap_poses.at(query_id);
+  } else {
+    const PoseGraph& query_graph = query_map.state.pose_graph;
     const Rigid2 T_map_other =
-        query.T_map_submap *
-        query_graph.submap_poses.at(pair.query_id).Inverse();
+        query.T_map_submap * query_graph.submap_poses.at(query_id).Inverse();
     query.paths = PathsOf(query_graph);
     for (auto& [trajectory, path] : query.paths) {
       for (Eigen::Vector2d& position : path) position = T_map_other * position;
     }
-    grids.push_back({pair.query().geometry, query.T_map_submap});
-  } else {
-    query.T_map_submap = pose_graph.submap_poses.at(pair.query_id);
+    grids.push_back({query_grid.geometry, query.T_map_submap});
   }
   MapPainter painter(grids, 2 * FLAGS_figure_pixels);
-  const absl::StatusOr<MapState> read =
-      ReadMap(FLAGS_input,
-              {[&](const SubmapId& id, const SubmapSummary&,
-                   const OccupancyGrid& grid) {
-                const auto pose = pose_graph.submap_poses.find(id);
-                if (pose == pose_graph.submap_poses.end()) return;
-                painter.AddSubmap(grid, pose->second);
-              }},
-              on_progress);
-  if (!read.ok()) return read.status();
+  for (const auto& [id, grid] : map.grids) {
+    const auto pose = pose_graph.submap_poses.find(id);
+    if (pose == pose_graph.submap_poses.end()) continue;
+    painter.AddSubmap(grid, pose->second);
+  }
   return DrawMatchOnMap(painter, reference, query, match.inliers);
 }
 
-absl::Status DrawMatch(const MethodOptions& method, Pictures* const pictures) {
+absl::Status DrawMatch(const LoopClosingOptions& stages, const LoadedMap& map,
+                       Pictures* const pictures) {
   const absl::StatusOr<MatchRow> chosen = ChooseMatch();
   if (!chosen.ok()) return chosen.status();
-  Progress progress("draw a match");
-  const absl::StatusOr<SubmapPair> pair =
-      ReadPair(chosen->reference, chosen->query, progress.Callback());
-  if (!pair.ok()) return pair.status();
-  const LoopClosingOptions& stages = method.options.loop_closing;
-  const absl::StatusOr<Match> match = MatchPair(stages, *pair);
+  absl::Status status = CheckHas(FLAGS_input, map, chosen->reference);
+  if (!status.ok()) return status;
+  std::optional<LoadedMap> other;
+  if (!FLAGS_query.empty()) {
+    absl::StatusOr<LoadedMap> loaded = LoadMap(FLAGS_query);
+    if (!loaded.ok()) return loaded.status();
+    other = *std::move(loaded);
+  }
+  const LoadedMap& query_map = other ? *other : map;
+  status =
+      CheckHas(other ? FLAGS_query : FLAGS_input, query_map, chosen->query);
+  if (!status.ok()) return status;
+  const OccupancyGrid& reference_grid = map.grids.at(chosen->reference);
+  const OccupancyGrid& query_grid = query_map.grids.at(chosen->query);
+  const absl::StatusOr<Match> match =
+      MatchPair(stages, *chosen, reference_grid, query_grid);
   if (!match.ok()) return match.status();
-  pictures->emplace_back("match_pair.png",
-                         DrawMatchedPair(pair->reference(), pair->query(),
-                                         match->pair.T_reference_query,
-                                         match->inliers, FLAGS_figure_pixels)
-                             .EncodePng());
-  const absl::StatusOr<Picture> on_map =
-      DrawPairOnMap(stages.place.field, *pair, *match, progress.Callback());
-  if (!on_map.ok()) return on_map.status();
-  pictures->emplace_back("match_map.png", on_map->EncodePng());
+  pictures->emplace_back(
+      "match_pair.png",
+      DrawMatchedPair(reference_grid, query_grid, match->pair.T_reference_query,
+                      match->inliers, FLAGS_figure_pixels)
+          .EncodePng());
+  pictures->emplace_back(
+      "match_map.png",
+      DrawPairOnMap(stages.place.field, map, query_map, *match).EncodePng());
   return absl::OkStatus();
 }
 
-absl::StatusOr<DescribedGrid> ReadSubmap(const PlaceOptions& options) {
+absl::StatusOr<DescribedGrid> DescribeSubmap(const PlaceOptions& options,
+                                             const LoadedMap& map) {
   const absl::StatusOr<std::optional<SubmapId>> wanted = SubmapOfFlags();
   if (!wanted.ok()) return wanted.status();
-  Progress progress("read");
   std::optional<DescribedGrid> best;
-  const absl::StatusOr<MapState> state = ReadMap(
-      FLAGS_input,
-      {[&](const SubmapId& id, const SubmapSummary&,
-           const OccupancyGrid& grid) {
-        if (*wanted && id != **wanted) return;
-        std::optional<DescribedGrid> described = DescribeGrid(options, grid);
-        if (described && (!best || described->features.features.size() >
-                                       best->features.features.size())) {
-          best = std::move(described);
-        }
-      }},
-      progress.Callback());
-  if (!state.ok()) return state.status();
+  for (const auto& [id, grid] : map.grids) {
+    if (*wanted && id != **wanted) continue;
+    std::optional<DescribedGrid> described = DescribeGrid(options, grid);
+    if (described && (!best || described->features.features.size() >
+                                   best->features.features.size())) {
+      best = std::move(described);
+    }
+  }
   if (!best) {
     return absl::NotFoundError(
         absl::StrCat(FLAGS_input, " has no submap ", FLAGS_submap,
@@ -343,12 +307,15 @@ absl::Status RunFigures() {
   if (method->describes_clouds) {
     return UsageError("figures are of method sdf or paper");
   }
-  const PlaceOptions& place = method->options.loop_closing.place;
-  const absl::StatusOr<DescribedGrid> submap = ReadSubmap(place);
+  const LoopClosingOptions& stages = method->options.loop_closing;
+  const absl::StatusOr<LoadedMap> map = LoadMap(FLAGS_input);
+  if (!map.ok()) return map.status();
+  const absl::StatusOr<DescribedGrid> submap =
+      DescribeSubmap(stages.place, *map);
   if (!submap.ok()) return submap.status();
-  Pictures pictures = DrawSubmap(place, *submap);
+  Pictures pictures = DrawSubmap(stages.place, *submap);
   if (!FLAGS_matches.empty()) {
-    const absl::Status status = DrawMatch(*method, &pictures);
+    const absl::Status status = DrawMatch(stages, *map, &pictures);
     if (!status.ok()) return status;
   }
   std::error_code error;

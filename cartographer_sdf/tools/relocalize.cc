@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -79,9 +78,9 @@ absl::Status CheckNumStarts() {
 }
 
 // One line and one entry of the result for each window.
-absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
-                           const Executor& executor,
+absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
                            StageProgress* const progress) {
+  const Options& options = task.options;
   const absl::StatusOr<MapWithScans> query = ReadMapWithScans(FLAGS_query);
   if (!query.ok()) return query.status();
   double longest = 0.;
@@ -95,12 +94,14 @@ absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
   for (int k = 0; k < FLAGS_num_starts; ++k) {
     const double start =
         FLAGS_num_starts == 1 ? 0. : latest_start * k / (FLAGS_num_starts - 1);
-    const ScanMap window = DescribeScans(
-        options.scan_places, options.loop_closing.place,
-        options.loop_closing.recognition.match, query->state,
-        query->point_clouds, TimeWindow{start, FLAGS_first_seconds}, executor);
-    const Localization result = LocalizeIn(
-        options.localization, options.loop_closing, map, window.map, executor);
+    const ScanMap window =
+        DescribeScans(options.scan_places, options.loop_closing.place,
+                      options.loop_closing.recognition.match, query->state,
+                      query->point_clouds,
+                      TimeWindow{start, FLAGS_first_seconds}, task.executor);
+    const Localization result =
+        LocalizeIn(options.localization, options.loop_closing, map, window.map,
+                   task.executor);
     num_localized += result.T_map_query.has_value();
     std::cout << absl::StrFormat("%7.1f s: %s, %s\n", start,
                                  LocalizationVerdictName(result.verdict),
@@ -114,9 +115,8 @@ absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
   return WriteWholeFile(FLAGS_result, FormatJson(results));
 }
 
-absl::Status WriteCombinedMap(const Options& options, const Session& map,
+absl::Status WriteCombinedMap(const MapTask& task, const Session& map,
                               const Session& query, const Localization& result,
-                              const Executor& executor,
                               StageProgress* const progress) {
   if (!result.T_map_query) {
     return absl::FailedPreconditionError(
@@ -124,8 +124,8 @@ absl::Status WriteCombinedMap(const Options& options, const Session& map,
                      " was not localized in ", map.path, ": ", result.reason));
   }
   const absl::StatusOr<MergingResult> merged =
-      AttachQuery(options.fold_check, options.loop_closing, map, query, result,
-                  executor, progress->Callback());
+      AttachQuery(task.options.fold_check, task.options.loop_closing, map,
+                  query, result, task.executor, progress->Callback());
   if (!merged.ok()) return merged.status();
   if (!merged->refusal.empty()) {
     return absl::FailedPreconditionError(absl::StrCat(
@@ -157,9 +157,8 @@ void PrintSummary(const Localization& result) {
 }
 
 // The files that the flags ask for.
-absl::Status WriteFiles(const Options& options, const Session& map,
+absl::Status WriteFiles(const MapTask& task, const Session& map,
                         const Session& query, const Localization& result,
-                        const Executor& executor,
                         StageProgress* const progress) {
   absl::Status status;
   if (!FLAGS_result.empty()) {
@@ -167,22 +166,23 @@ absl::Status WriteFiles(const Options& options, const Session& map,
   }
   if (status.ok() && !FLAGS_report.empty()) {
     status =
-        WriteRelocalizationReport(ReportRequestOfFlags(options), map, query,
-                                  result, progress->Begin("report"));
+        WriteRelocalizationReport(ReportRequestOfFlags(task.options), map,
+                                  query, result, progress->Begin("report"));
   }
   if (status.ok() && !FLAGS_output.empty()) {
-    status = WriteCombinedMap(options, map, query, result, executor, progress);
+    status = WriteCombinedMap(task, map, query, result, progress);
   }
   return status;
 }
 
 // The query as a whole, or in one window.
-absl::Status RunOnce(const Options& options,
+absl::Status RunOnce(const MapTask& task,
                      const std::optional<TimeWindow>& window, DescribedMap map,
-                     const Executor& executor, StageProgress* const progress) {
+                     StageProgress* const progress) {
+  const Options& options = task.options;
   const absl::StatusOr<Session> query = DescribeSession(
-      options.loop_closing, options.scan_places, FLAGS_query, window, executor,
-      progress->Begin("read and describe the query"));
+      options.loop_closing, options.scan_places, FLAGS_query, window,
+      task.executor, progress->Begin("read and describe the query"));
   if (!query.ok()) return query.status();
   LocalizationOptions localization = options.localization;
   if (!FLAGS_output.empty()) {
@@ -191,23 +191,15 @@ absl::Status RunOnce(const Options& options,
     localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
   }
   const Localization result =
-      LocalizeIn(localization, options.loop_closing, map, query->map, executor,
-                 progress->Callback());
+      LocalizeIn(localization, options.loop_closing, map, query->map,
+                 task.executor, progress->Callback());
   const Session map_session{FLAGS_map, std::move(map), {}};
   const absl::Status status =
-      WriteFiles(options, map_session, *query, result, executor, progress);
+      WriteFiles(task, map_session, *query, result, progress);
   if (!status.ok()) return status;
   PrintSummary(result);
   if (!FLAGS_result.empty()) std::cout << FLAGS_result << "\n";
   PrintPaths();
-  return absl::OkStatus();
-}
-
-absl::Status CheckInputs() {
-  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
-    absl::Status status = CheckIsNoInput(input, FLAGS_output);
-    if (!status.ok()) return status;
-  }
   return absl::OkStatus();
 }
 
@@ -217,18 +209,19 @@ absl::Status RunRelocalize() {
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
   if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
-  if (absl::Status status = CheckInputs(); !status.ok()) return status;
-  const Options& options = task->options;
+  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
+    absl::Status status = CheckIsNoInput(input, FLAGS_output);
+    if (!status.ok()) return status;
+  }
   StageProgress progress;
   absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
-      options.loop_closing, FLAGS_map, task->executor,
+      task->options.loop_closing, FLAGS_map, task->executor,
       FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
       progress.Begin("read and describe the map"));
   if (!map.ok()) return map.status();
   return IsGiven("num_starts")
-             ? RunManyStarts(options, *map, task->executor, &progress)
-             : RunOnce(options, *window, *std::move(map), task->executor,
-                       &progress);
+             ? RunManyStarts(*task, *map, &progress)
+             : RunOnce(*task, *window, *std::move(map), &progress);
 }
 
 }  // namespace

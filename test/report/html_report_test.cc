@@ -114,6 +114,8 @@ TEST(HtmlReportTest, LimitsItsSize) {
   EXPECT_LT(html.size(), size_t{30} << 20);
   EXPECT_EQ(Count(html, "data:image/png"), 2 + 41);
   EXPECT_THAT(html, HasSubstr("159 pictures are left out"));
+  content.num_undrawn = 3;
+  EXPECT_THAT(RenderReport(content), HasSubstr("162 pictures are left out"));
 }
 
 TEST(HtmlReportTest, LeavesOutWhatIsEmpty) {
