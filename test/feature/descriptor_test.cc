@@ -120,8 +120,8 @@ TEST(DescribeKeypointsTest, EndsWithTwiceTheMeanDistanceInMetres) {
     EXPECT_GE(set.descriptors.col(k).head(17).minCoeff(), 0.f);
   }
   // The mean over a symmetric window of a linear field.
-  EXPECT_NEAR(set.descriptors(17, 0), 2. * (1.2 + 0.5), 1e-3);
-  EXPECT_NEAR(set.descriptors(17, 1), 2. * (0.7 + 0.5), 1e-3);
+  EXPECT_NEAR(set.descriptors(17, 0), 2. * (1.2 + 0.5), 1e-6);
+  EXPECT_NEAR(set.descriptors(17, 1), 2. * (0.7 + 0.5), 1e-6);
   DescriptorOptions options;
   options.distance_weight = 0.;
   EXPECT_EQ(Describe(WallBelow(), {At(0., 1.2)}, options).descriptors(17, 0),
