@@ -12,9 +12,10 @@ as the first comment inside it. Prints one line for each violation and exits
 with 1 if there is any. Understands C++ as clang-format leaves it.
 """
 
-import pathlib
 import re
 import sys
+
+import source_check
 
 USUAL_LENGTH = 40
 MAX_LENGTH = 60
@@ -159,7 +160,8 @@ JUDGED = [
 ]
 
 
-def run_self_test():
+def find_faults():
+    """What is wrong with this check itself."""
     faults = []
     for text, expected in PARSED:
         found = list(functions(text))
@@ -169,28 +171,8 @@ def run_self_test():
         found = list(check_text(text))
         if bool(found) == is_right:
             faults.append(f"got {found} for\n{text}")
-    for fault in faults:
-        print(f"self-test: {fault}")
-    return 1 if faults else 0
-
-
-def main():
-    if sys.argv[1:] == ["--self-test"]:
-        return run_self_test()
-    if len(sys.argv) > 2 or (len(sys.argv) == 2 and sys.argv[1].startswith("-")):
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
-    default = pathlib.Path(__file__).resolve().parent.parent
-    root = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else default
-    if not (root / "CMakeLists.txt").is_file():
-        print(f"check_function_length.py: {root} is not a checkout of the project",
-              file=sys.stderr)
-        return 2
-    violations = check_tree(root)
-    for violation in violations:
-        print(violation)
-    return 1 if violations else 0
+    return faults
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(source_check.run(__doc__, check_tree, find_faults))

@@ -15,6 +15,8 @@ import re
 import sys
 import tempfile
 
+import source_check
+
 # The one-way arrows: what the files of a folder may include besides their own
 # folder. An entry with a slash allows that header alone.
 CORE = {
@@ -323,7 +325,8 @@ def check_table():
             del todo[folder]
 
 
-def run_self_test():
+def find_faults():
+    """What is wrong with this check itself."""
     faults = list(check_table())
     with tempfile.TemporaryDirectory() as directory:
         root = pathlib.Path(directory)
@@ -341,27 +344,8 @@ def run_self_test():
         (root / "CMakeLists.txt").write_text(GOOD_CMAKE.replace(" grid", ""), encoding="utf-8")
         if not any(line.startswith("CMakeLists.txt") for line in check_tree(root)):
             faults.append("a folder that the build does not know went unnoticed")
-    for fault in faults:
-        print(f"self-test: {fault}")
-    return 1 if faults else 0
-
-
-def main():
-    if sys.argv[1:] == ["--self-test"]:
-        return run_self_test()
-    if len(sys.argv) > 2 or (len(sys.argv) == 2 and sys.argv[1].startswith("-")):
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
-    default = pathlib.Path(__file__).resolve().parent.parent
-    root = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else default
-    if not (root / "CMakeLists.txt").is_file():
-        print(f"check_layering.py: {root} is not a checkout of the project", file=sys.stderr)
-        return 2
-    violations = check_tree(root)
-    for violation in violations:
-        print(violation)
-    return 1 if violations else 0
+    return faults
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(source_check.run(__doc__, check_tree, find_faults))

@@ -26,8 +26,9 @@ import tempfile
 import typing
 
 import make_figures
+from measuring import (DATA_DIR, PROGRAM, SOURCE_DIR, Failure, check_program,
+                       commit_name, processor, read_csv)
 
-SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
 METHODS = ("sdf", "paper", "shape_context")
 CLEARANCES = (2., 1.5, 1., 0.5)
 OVERLAPS = (0.5, 0.1, 0.2, 0.3, 0.4, 0.6, 0.7)
@@ -71,10 +72,6 @@ PARAMETERS = {
 }
 
 
-class Failure(Exception):
-    """A sentence for the user."""
-
-
 class Map(typing.NamedTuple):
     name: str
     path: pathlib.Path
@@ -110,30 +107,6 @@ def parse_map(text):
         if not path.exists():
             raise Failure(f"there is no {path}")
     return Map(name, paths[0], paths[1], paths[2] if len(paths) == 3 else None)
-
-
-def output_of(*arguments):
-    result = subprocess.run(arguments, capture_output=True, text=True,
-                            check=False, cwd=SOURCE_DIR)
-    return result.stdout.strip() if result.returncode == 0 else ""
-
-
-def commit_name():
-    commit = output_of("git", "rev-parse", "--short", "HEAD") or "unknown"
-    if output_of("git", "status", "--porcelain", "--untracked-files=no"):
-        commit += " with changes"
-    return commit
-
-
-def processor():
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            for line in file:
-                if line.startswith("model name"):
-                    return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return "an unknown processor"
 
 
 class Runner:
@@ -200,10 +173,9 @@ class Runner:
     def numbers(self, path):
         """{subject: {quantity: value}} of an evaluate --csv."""
         subjects = {}
-        with open(path, newline="", encoding="utf-8") as file:
-            for row in csv.DictReader(file):
-                subjects.setdefault(row["subject"], {})[row["quantity"]] = float(
-                    row["value"])
+        for row in read_csv(path):
+            subjects.setdefault(row["subject"], {})[row["quantity"]] = float(
+                row["value"])
         return subjects
 
 
@@ -528,15 +500,9 @@ def section_relations(runner, maps, results):
     return lines + table(header, rows)
 
 
-def read_labels(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def read_scores(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return {tuple(r[c] for c in IDS): (float(r["score"]), r["accepted"] == "1")
-                for r in csv.DictReader(file)}
+    return {tuple(r[c] for c in IDS): (float(r["score"]), r["accepted"] == "1")
+            for r in read_csv(path)}
 
 
 IDS = ("reference_trajectory", "reference_index", "query_trajectory",
@@ -556,7 +522,7 @@ def section_failures(strict, remarks):
     rows = []
     for name, result in strict.items():
         for method in METHODS:
-            labels = read_labels(result["labels"][method])
+            labels = read_csv(result["labels"][method])
             scores = read_scores(result["matches"][method])
             def score_of(label):
                 key = tuple(label[c] for c in IDS)
@@ -591,7 +557,7 @@ def section_failures(strict, remarks):
     rows = []
     for name, result in strict.items():
         for method in METHODS:
-            labels = read_labels(result["labels"][method])
+            labels = read_csv(result["labels"][method])
             row = [name, method]
             for low, high in bins:
                 inside = [l for l in labels
@@ -677,8 +643,7 @@ def main():
         formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("maps", nargs="*", metavar="NAME=MAP,TRUTH[,RELATIONS]")
     parser.add_argument("--data", type=pathlib.Path,
-                        default=SOURCE_DIR / ".." / "shared" / "data",
-                        help="where maps are looked for")
+                        default=DATA_DIR, help="where maps are looked for")
     parser.add_argument("--only", help="some of the maps, separated by commas")
     parser.add_argument("--sessions", default="willow_2:willow_1",
                         help="QUERY:MAP, by names, separated by commas; those "
@@ -701,7 +666,7 @@ def main():
                         help="Markdown to put where the report says where the "
                         "methods fail")
     parser.add_argument("--program", type=pathlib.Path,
-                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+                        default=PROGRAM)
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
                         / "evaluation.md")
@@ -709,8 +674,7 @@ def main():
     if arguments.pairs < 1:
         parser.error("--pairs must be positive")
     try:
-        if not os.access(arguments.program, os.X_OK):
-            raise Failure(f"build first: {arguments.program} is missing")
+        check_program(arguments.program)
         arguments.pairs_by_map = {}
         for part in filter(None, arguments.pairs_of.split(",")):
             name, _, number = part.partition("=")

@@ -29,7 +29,8 @@ import sys
 import tempfile
 import threading
 
-SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
+from measuring import (DATA_DIR, PROGRAM, SOURCE_DIR, Failure, check_program,
+                       commit_name, read_csv)
 
 # Lua name of each option, its short name, and the values that are tried. The
 # shipped one is always among them.
@@ -55,10 +56,6 @@ GRIDS = {
 }
 COLUMNS = ["key", "method", "map", "options", "recall_p1", "ap",
            "recall_p1_pose", "ap_pose"]
-
-
-class Failure(Exception):
-    """A sentence for the user."""
 
 
 def points_of(method):
@@ -87,11 +84,10 @@ class Table:
         self.lock = threading.Lock()
         self.rows = {}
         if path.exists():
-            with open(path, newline="", encoding="utf-8") as file:
-                for row in csv.DictReader(file):
-                    # A run that was broken off may leave half a line.
-                    if None not in row.values() and set(row) == set(COLUMNS):
-                        self.rows[row["key"]] = row
+            for row in read_csv(path):
+                # A run that was broken off may leave half a line.
+                if None not in row.values() and set(row) == set(COLUMNS):
+                    self.rows[row["key"]] = row
             self.write()
 
     def write(self):
@@ -156,10 +152,8 @@ class Search:
                                 text=True, check=False)
         if result.returncode != 0:
             raise Failure(result.stderr.strip() or "evaluate failed")
-        with open(numbers, newline="", encoding="utf-8") as file:
-            values = {row["quantity"]: row["value"]
-                      for row in csv.DictReader(file)
-                      if row["subject"].startswith(f"{method} ")}
+        values = {row["quantity"]: row["value"] for row in read_csv(numbers)
+                  if row["subject"].startswith(f"{method} ")}
         self.table.add({"key": key, "method": method, "map": name,
                         "options": format_options(options),
                         **{c: values.get(c, "") for c in COLUMNS[4:]}})
@@ -204,25 +198,16 @@ def cell(text):
     return f"{float(text):.3f}" if text else "-"
 
 
-def output_of(*arguments):
-    result = subprocess.run(arguments, capture_output=True, text=True,
-                            check=False, cwd=SOURCE_DIR)
-    return result.stdout.strip() if result.returncode == 0 else ""
-
-
 def short_options(method, row):
     values = dict(part.split("=") for part in row["options"].split())
     return [values[name] for name, _, _ in GRIDS[method]]
 
 
 def report(arguments, tuned, tried, num_points):
-    commit = output_of("git", "rev-parse", "--short", "HEAD") or "unknown"
-    if output_of("git", "status", "--porcelain", "--untracked-files=no"):
-        commit += " with changes"
     command = shlex.join(["scripts/grid_search.py", *sys.argv[1:]])
     lines = [
         "# Grid search", "",
-        f"Made by `{command}` on {datetime.date.today()}, commit {commit}. Recall "
+        f"Made by `{command}` on {datetime.date.today()}, commit {commit_name()}. Recall "
         f"at precision 1 of {arguments.pairs} random pairs (seed "
         f"{arguments.seed}; a match from an overlap of "
         f"{arguments.min_overlap:g} on), by the paper's judgement: the pair, "
@@ -302,8 +287,7 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path,
-                        default=SOURCE_DIR / ".." / "shared" / "data",
-                        help="where maps and truths are")
+                        default=DATA_DIR, help="where maps and truths are")
     parser.add_argument("--tune", default="willow_1", help="map to tune on")
     parser.add_argument("--report_on", default="willow_2,aces,intel",
                         help="maps to report on, separated by commas")
@@ -318,7 +302,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
                         help="runs at a time, of one thread each")
     parser.add_argument("--program", type=pathlib.Path,
-                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+                        default=PROGRAM)
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
                         / "grid_search.md")
@@ -327,8 +311,7 @@ def main():
         parser.error("--jobs and --pairs must be positive, --max_points not "
                      "negative")
     try:
-        if not os.access(arguments.program, os.X_OK):
-            raise Failure(f"build first: {arguments.program} is missing")
+        check_program(arguments.program)
         search(arguments)
     except (Failure, OSError, ValueError, KeyError) as failure:
         print(f"grid_search.py: {failure}", file=sys.stderr)

@@ -45,7 +45,8 @@ except ImportError:
           file=sys.stderr)
     sys.exit(1)
 
-SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
+from measuring import (DATA_DIR, PROGRAM, SOURCE_DIR, Failure,  # noqa: E402
+                       check_program)
 
 # building, map, truth, and the same of a query map.
 REAL_SETS = [
@@ -77,10 +78,6 @@ DIFFERENT = "different buildings"
 # Log-odds from which on a match is accepted by default.
 THRESHOLD = 3.
 CALIBRATION_EDGES = [0., .01, .05, .2, .5, .8, .95, .99, .999, 1.]
-
-
-class Failure(Exception):
-    """A sentence for the user."""
 
 
 def tell(text):
@@ -363,8 +360,7 @@ class Workshop:
         self.neighbours = neighbours
         configuration = (NEIGHBOURS_CONFIGURATION if neighbours
                          else CONFIGURATION)
-        if not os.access(program, os.X_OK):
-            raise Failure(f"build first: {program} is missing")
+        check_program(program)
         options = {
             name: (SOURCE_DIR / "configuration_files" / name).read_bytes()
             for name in ("sdf_global_constraints.lua",
@@ -488,8 +484,7 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path,
-                        default=SOURCE_DIR / ".." / "shared" / "data",
-                        help="where the real maps are")
+                        default=DATA_DIR, help="where the real maps are")
     parser.add_argument("--sets", type=pathlib.Path, help="a list of more")
     parser.add_argument("--simulated", type=int, default=len(SIMULATED),
                         help="how many simulated buildings, at most "
@@ -498,7 +493,7 @@ def main():
                         help="keeps matches and simulated maps here and goes "
                              "on with them")
     parser.add_argument("--program", type=pathlib.Path,
-                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+                        default=PROGRAM)
     parser.add_argument("--threads", type=int, default=0,
                         help="0: as many as there are cores")
     parser.add_argument("--neighbours", action="store_true",

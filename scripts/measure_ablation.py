@@ -22,7 +22,8 @@ import sys
 import tempfile
 import typing
 
-SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
+from measuring import (DATA_DIR, PROGRAM, SOURCE_DIR, Failure, check_program,
+                       commit_name, processor, read_csv)
 
 # name: map, truth, and the same of a query map.
 SETS = {
@@ -132,15 +133,6 @@ IDS = ["reference_trajectory", "reference_index", "query_trajectory",
 REFUSED = ("inconsistent", "unsupported")
 
 
-class Failure(Exception):
-    """A sentence for the user."""
-
-
-def read_csv(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def run(arguments):
     """The CPU seconds that a run of the program takes, user and system."""
     with tempfile.TemporaryFile("w+") as errors:
@@ -231,31 +223,11 @@ def format_number(column, numbers, shipped, comparable):
     return f"{numbers[column]:.3f}"
 
 
-def output_of(*arguments):
-    result = subprocess.run(arguments, capture_output=True, text=True,
-                            check=False, cwd=SOURCE_DIR)
-    return result.stdout.strip() if result.returncode == 0 else ""
-
-
-def processor():
-    try:
-        with open("/proc/cpuinfo", encoding="utf-8") as file:
-            for line in file:
-                if line.startswith("model name"):
-                    return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return "an unknown processor"
-
-
 def report(names, variants, results, jobs):
-    commit = output_of("git", "rev-parse", "--short", "HEAD") or "unknown"
-    if output_of("git", "status", "--porcelain", "--untracked-files=no"):
-        commit += " with changes"
     lines = [
         "# What each stage is worth", "",
         f"Made by `{shlex.join(['scripts/measure_ablation.py', *sys.argv[1:]])}`"
-        f" on {datetime.date.today()}, commit {commit}, {processor()}, "
+        f" on {datetime.date.today()}, commit {commit_name()}, {processor()}, "
         f"{os.cpu_count()} cores, {jobs} runs at a time.", "",
         "Each variant takes one thing away from the shipped options, on the "
         "same binary. Recall is of positive pairs with a right answer (0.5 m, "
@@ -297,8 +269,7 @@ def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path,
-                        default=SOURCE_DIR / ".." / "shared" / "data",
-                        help="where the maps are")
+                        default=DATA_DIR, help="where the maps are")
     parser.add_argument("--sets", help=f"some of {','.join(SETS)}")
     parser.add_argument("--variants", help="some of "
                         + ",".join(v.name for v in VARIANTS)
@@ -306,7 +277,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
                         help="runs at a time, of one thread each")
     parser.add_argument("--program", type=pathlib.Path,
-                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+                        default=PROGRAM)
     parser.add_argument("--output", type=pathlib.Path,
                         default=SOURCE_DIR / "docs" / "results"
                         / "ablation.md")
@@ -326,8 +297,7 @@ def main():
         if not names:
             raise Failure("there is not one data set")
         program = arguments.program.resolve()
-        if not os.access(program, os.X_OK):
-            raise Failure(f"build first: {program} is missing")
+        check_program(program)
         results = {}
         with tempfile.TemporaryDirectory() as directory:
             work = pathlib.Path(directory)

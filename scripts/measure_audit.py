@@ -14,7 +14,6 @@ usage: measure_audit.py [--build DIR] [--data DIR] [--work DIR] [--maps NAME,...
 
 import argparse
 import collections
-import csv
 import datetime
 import math
 import pathlib
@@ -22,7 +21,8 @@ import resource
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parent.parent
+from measuring import DATA_DIR, SOURCE_DIR, commit_name, read_csv
+
 KINDS = ["corridor", "door", "half_turn", "twin", "row", "random"]
 # Pairs of submaps of each kind, and seeds.
 RUNS = [(1, 1), (1, 2), (4, 1), (10, 1)]
@@ -52,11 +52,6 @@ def compose(a, b):
 
 def angle(a):
     return abs(math.atan2(math.sin(a), math.cos(a)))
-
-
-def read_csv(path):
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
 
 
 def read_truth(path):
@@ -202,21 +197,16 @@ def measure(program, name, data, work, report):
         print(report["spoilt"][-1], flush=True)
 
 
-def commit():
-    return subprocess.run(["git", "-C", SOURCE, "rev-parse", "--short", "HEAD"],
-                          capture_output=True, text=True, check=False).stdout.strip()
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--build", type=pathlib.Path, default=SOURCE / "build")
-    parser.add_argument("--data", type=pathlib.Path, default=SOURCE / "../shared/data")
+    parser.add_argument("--build", type=pathlib.Path, default=SOURCE_DIR / "build")
+    parser.add_argument("--data", type=pathlib.Path, default=DATA_DIR)
     parser.add_argument("--work", type=pathlib.Path, required=True,
                         help="directory for maps; closed ones that are there are used again")
     parser.add_argument("--maps", default=",".join(MAPS))
     today = datetime.date.today().isoformat()
     parser.add_argument("--output", type=pathlib.Path,
-                        default=SOURCE / "docs/results/audit.md")
+                        default=SOURCE_DIR / "docs/results/audit.md")
     arguments = parser.parse_args()
     program = Program(arguments.build / "cartographer_sdf")
     arguments.work.mkdir(parents=True, exist_ok=True)
@@ -237,7 +227,7 @@ def main():
 
     lines = [
         "# audit: wrong constraints found, right ones doubted", "",
-        f"Made by `scripts/measure_audit.py` on {today}, commit {commit()}; options as shipped.",
+        f"Made by `scripts/measure_audit.py` on {today}, commit {commit_name()}; options as shipped.",
         "Seconds are processor time of the whole process: what others do does not count.", "",
         "## Maps as they are", "",
         "Of the constraints that are right, near and wrong by the true poses, and without one: how "

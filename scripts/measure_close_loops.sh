@@ -8,21 +8,7 @@
 #
 # usage: [OUTPUT=FILE] measure_close_loops.sh [DIRECTORY OF THE MAPS, default ../shared/data]
 
-set -euo pipefail
-
-[[ -x /usr/bin/time ]] || { echo "install the Debian package time" >&2; exit 1; }
-
-SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
-BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
-DATA_DIR="${1:-${SOURCE_DIR}/../shared/data}"
-PROGRAM="${BUILD_DIR}/cartographer_sdf"
-REPORT="${OUTPUT:-${SOURCE_DIR}/docs/results/runs/close_loops.md}"
-WORK_DIR="$(mktemp -d)"
-trap 'rm -rf "${WORK_DIR}"' EXIT
-
-[[ -d "${DATA_DIR}" ]] || { echo "no maps at ${DATA_DIR}" >&2; exit 1; }
-[[ -x "${PROGRAM}" ]] || { echo "build first: ${PROGRAM} is missing" >&2; exit 1; }
-mkdir -p "$(dirname "${REPORT}")"
+source "$(dirname "${BASH_SOURCE[0]}")/transcript.sh" "$@"
 
 # Prints a command as a reader would type it, and what it says.
 show() {
@@ -34,13 +20,8 @@ show() {
   echo '```'
 }
 
-{
-  echo "# close_loops and match on real maps"
-  echo
-  echo "Made by \`scripts/measure_close_loops.sh\` on $(date +%Y-%m-%d), commit" \
-    "$(git -C "${SOURCE_DIR}" rev-parse --short HEAD)," \
-    "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $(nproc) cores;" \
-    "options as shipped."
+measure() {
+  local name map relations method pair
   for name in intel aces mit_killian; do
     map="${DATA_DIR}/${name}_open_loop.pbstream"
     relations=()
@@ -64,8 +45,7 @@ show() {
   echo
   echo "## All pairs, without injection"
   for name in intel aces mit_killian willow_1 willow_2; do
-    map="${DATA_DIR}/${name}.pbstream"
-    [[ -f "${map}" ]] || map="${DATA_DIR}/${name}_open_loop.pbstream"
+    map="$(map_of "${name}")"
     for method in sdf paper; do
       echo
       echo "${name}, ${method}:"
@@ -87,6 +67,5 @@ show() {
   for name in user_map_arena user_map_odometry user_map_two_sessions; do
     show close_loops --input "${DATA_DIR}/${name}.pbstream" --output "${WORK_DIR}/closed.pbstream"
   done
-} > "${REPORT}.tmp"
-mv "${REPORT}.tmp" "${REPORT}"
-echo "${REPORT}"
+}
+write_transcript close_loops "close_loops and match on real maps" measure

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/closing/pipeline.h"
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -119,12 +120,14 @@ class CloseGraphTest : public ::testing::Test {
     match.verdict = Verdict::kAccepted;
     return match;
   }
-  [[nodiscard]] ClosedGraph Close(std::vector<Match> matches) const {
+  [[nodiscard]] ClosedGraph Close(
+      std::vector<Match> matches,
+      const std::set<int>& frozen_trajectories = {}) const {
     std::vector<std::pair<std::string, double>> seconds;
     StageClock clock({}, &seconds);
-    return CloseGraph(options_,
-                      {&graph_, &odometry_, visits_.Places().places, &clouds_},
-                      std::move(matches), {}, MakeExecutor(1), &clock);
+    return CloseGraph(
+        options_, {&graph_, &odometry_, visits_.Places().places, &clouds_},
+        std::move(matches), frozen_trajectories, MakeExecutor(1), &clock);
   }
 
   const testing::TwoVisits visits_;
@@ -165,6 +168,93 @@ TEST_F(CloseGraphTest, WhatIsNotAcceptedIsNoClosure) {
   EXPECT_THAT(Statuses(closed.closures),
               ElementsAre(ClosureStatus::kUnsupported));
   EXPECT_EQ(closed.pose_graph.constraints.size(), graph_.constraints.size());
+}
+
+// All submaps are of trajectory 0, and so are the nodes of the first visit.
+TEST_F(CloseGraphTest, FrozenTrajectoriesStayToTheLastBit) {
+  const ClosedGraph closed = Close({TrueMatch(9.)}, {0});
+  EXPECT_THAT(Statuses(closed.closures), ElementsAre(ClosureStatus::kOutlier));
+  for (const auto& [id, pose] : graph_.submap_poses) {
+    const Rigid2& after = closed.pose_graph.submap_poses.at(id);
+    EXPECT_EQ(after.translation(), pose.translation()) << id;
+    EXPECT_EQ(after.rotation(), pose.rotation()) << id;
+  }
+  for (const auto& [id, node] : graph_.nodes) {
+    if (id.trajectory != 0) continue;
+    const Rigid2& after = closed.pose_graph.nodes.at(id).T_map_node;
+    EXPECT_EQ(after.translation(), node.T_map_node.translation()) << id;
+    EXPECT_EQ(after.rotation(), node.T_map_node.rotation()) << id;
+  }
+}
+
+// Nodes see the room from where they truly are: scans find 15 cm of error.
+TEST_F(CloseGraphTest, ScansCorrectWhereAMatchIsOff) {
+  for (const Constraint& constraint : graph_.constraints) {
+    const Rigid2 T_world_node =
+        visits_.T_world_submap(constraint.submap) * constraint.T_submap_node;
+    for (const SurfacePoint& point :
+         testing::TakeScan(testing::TwoRooms(), T_world_node)) {
+      clouds_[constraint.node].push_back(point.position.cast<float>());
+    }
+  }
+  Match match = TrueMatch(9.);
+  match.pair.T_reference_query =
+      match.pair.T_reference_query * Rigid2(0.12, -0.09, 0.);
+  const auto relative = [](const ClosedGraph& closed) {
+    const auto& poses = closed.pose_graph.submap_poses;
+    return poses.at(testing::TwoVisits::kWestFirst).Inverse() *
+           poses.at(testing::TwoVisits::kWestAgain);
+  };
+  options_.detect_torn_submaps = false;
+  // Half a cell.
+  EXPECT_THAT(
+      relative(Close({match})),
+      testing::IsPoseNear(visits_.T_west_first_west_again(), 0.025, 0.002));
+  clouds_.clear();
+  EXPECT_THAT(relative(Close({match})),
+              testing::IsPoseNear(match.pair.T_reference_query, 1e-3, 1e-4));
+}
+
+TEST_F(CloseGraphTest, OnlySelectedClosuresGetConstraints) {
+  std::vector<Closure> closures = MakeClosures(
+      {TrueMatch(9.), TrueMatch(9.), TrueMatch(9.), TrueMatch(9.)});
+  closures[1].status = ClosureStatus::kUnsupported;
+  closures[2].status = ClosureStatus::kDetectedOnly;
+  GenerateConstraints(options_.constraints, FindInsertedNodes(graph_),
+                      *visits_.Places().places, {}, MakeExecutor(1), &closures);
+  EXPECT_THAT(
+      Statuses(closures),
+      ElementsAre(ClosureStatus::kInGraph, ClosureStatus::kUnsupported,
+                  ClosureStatus::kDetectedOnly, ClosureStatus::kInGraph));
+  EXPECT_EQ(closures[0].constraints.size(), 8u);
+  EXPECT_THAT(closures[1].constraints, IsEmpty());
+  EXPECT_THAT(closures[2].constraints, IsEmpty());
+}
+
+// A drive whose odometry is off by a centimetre a step, and has no part in the
+// poses.
+TEST(OptimizationInForceTest, TakesTheWeightsThatTheMapShows) {
+  PoseGraph graph;
+  for (int k = 0; k < 25; ++k) {
+    Node& node = graph.nodes[{0, k}];
+    node.T_map_node = Rigid2(0.5 * k, 0., 0.);
+    node.T_local_node = node.T_map_node;
+    if (k > 0) node.T_previous_node_by_odometry = Rigid2(0.51, 0., 0.001);
+  }
+  ClosingOptions options;
+  options.optimization.odometry_translation_weight = 7.;
+  options.optimization.odometry_rotation_weight = 8.;
+  options.optimization.huber_scale = 9.;
+  const OptimizationOptions inferred = OptimizationInForce(options, graph);
+  EXPECT_EQ(inferred.odometry_translation_weight, 0.);
+  EXPECT_EQ(inferred.odometry_rotation_weight, 0.);
+  EXPECT_EQ(inferred.huber_scale, 9.);
+  // Nothing is shown.
+  EXPECT_EQ(OptimizationInForce(options, {}).odometry_translation_weight, 7.);
+  options.infer_odometry_weights = false;
+  const OptimizationOptions given = OptimizationInForce(options, graph);
+  EXPECT_EQ(given.odometry_translation_weight, 7.);
+  EXPECT_EQ(given.odometry_rotation_weight, 8.);
 }
 
 }  // namespace

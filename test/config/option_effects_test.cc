@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// No option of describing and recognising places is without effect.
+// No option that ships is without effect: here those of describing and
+// recognising places.
 
-#include <cmath>
+#include "test/testing/option_effects.h"
+
 #include <map>
 #include <optional>
 #include <sstream>
@@ -12,6 +14,7 @@
 #include <vector>
 
 #include "cartographer_sdf/config/option_keys.h"
+#include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/recognition/recognize.h"
@@ -20,66 +23,6 @@
 
 namespace cartographer_sdf::option_effects_test {
 namespace {
-
-// Counts the leaves of a struct of options, and gives one of them another
-// value: each attempt is another way to change it.
-class LeafChanger {
- public:
-  LeafChanger(const int leaf, const int attempt)
-      : leaf_(leaf), attempt_(attempt) {}
-
-  static constexpr int kNumAttempts = 9;
-
-  void operator()(const char* const key, double& option) {
-    constexpr double kFactors[kNumAttempts] = {0.5, 2.,  0.1,  10., 0.,
-                                               -1., 1e3, 1e-3, -10.};
-    if (!IsChosen(key)) return;
-    option = option == 0. ? kFactors[attempt_] : option * kFactors[attempt_];
-  }
-  void operator()(const char* const key, int& option) {
-    if (!IsChosen(key)) return;
-    const int values[kNumAttempts] = {option / 2,  2 * option, 1,
-                                      option + 1,  option - 1, 0,
-                                      50 * option, 3,          7};
-    option = values[attempt_];
-  }
-  void operator()(const char* const key, bool& option) {
-    if (IsChosen(key)) option = !option;
-  }
-  template <typename T>
-  void operator()(const char* const key, T& option) {
-    if constexpr (std::is_enum_v<T>) {
-      if (!IsChosen(key)) return;
-      for (const auto& [name, value] : OptionNames(T())) {
-        if (value != option) {
-          option = value;
-          return;
-        }
-      }
-    } else {
-      const std::string outer = path_;
-      path_ += std::string(key) + ".";
-      VisitOptions(*this, option);
-      path_ = outer;
-    }
-  }
-
-  [[nodiscard]] int num_leaves() const { return num_leaves_; }
-  [[nodiscard]] const std::string& chosen() const { return chosen_; }
-
- private:
-  bool IsChosen(const char* const key) {
-    if (num_leaves_++ != leaf_) return false;
-    chosen_ = path_ + key;
-    return true;
-  }
-
-  const int leaf_;
-  const int attempt_;
-  int num_leaves_ = 0;
-  std::string path_;
-  std::string chosen_;
-};
 
 // What a robot sees of two rooms, one after the other, and later both again.
 class Drive {
@@ -174,45 +117,13 @@ std::string Candidates(const RetrievalOptions& options,
   return text.str();
 }
 
-// The leaves of `options` that change no outcome in any attempt. `outcome`
-// gives one or more texts.
-template <typename Options, typename Outcome>
-std::vector<std::string> LeavesWithoutEffect(const Options& options,
-                                             const Outcome& outcome) {
-  Options copy = options;
-  LeafChanger counter(-1, 0);
-  VisitOptions(counter, copy);
-  const auto before = outcome(options);
-  std::vector<std::string> idle;
-  for (int leaf = 0; leaf < counter.num_leaves(); ++leaf) {
-    bool has_effect = false;
-    std::string path;
-    for (int attempt = 0; attempt < LeafChanger::kNumAttempts && !has_effect;
-         ++attempt) {
-      Options changed = options;
-      LeafChanger changer(leaf, attempt);
-      VisitOptions(changer, changed);
-      path = changer.chosen();
-      has_effect = Validate(changed).empty() && outcome(changed) != before;
-    }
-    if (!has_effect) idle.push_back(path);
-  }
-  return idle;
-}
-
-std::string Listed(const std::vector<std::string>& paths) {
-  std::string text;
-  for (const std::string& path : paths) text += path + "\n";
-  return text;
-}
-
 TEST(OptionEffectsTest, OfPlaces) {
   const Drive drive;
-  const std::vector<std::string> idle = LeavesWithoutEffect(
-      PlaceOptions(), [&drive](const PlaceOptions& options) {
-        return Text(drive.Describe(options));
-      });
-  EXPECT_EQ(Listed(idle), "");
+  const std::vector<testing::Scenario<PlaceOptions>> scenarios = {
+      {"", [&drive](const PlaceOptions& options) {
+         return Text(drive.Describe(options));
+       }}};
+  EXPECT_EQ(testing::OptionsWithoutEffect(PlaceOptions(), scenarios), "");
 }
 
 TEST(OptionEffectsTest, OfRecognition) {
@@ -221,36 +132,109 @@ TEST(OptionEffectsTest, OfRecognition) {
   // One whose matches only its neighbours propose.
   std::map<SubmapId, Place> featureless = places;
   featureless.at({0, 12}).features = FeatureSet();
-  const auto outcome = [&](const RecognitionOptions& options) {
-    // Some act only where others have been set.
-    RecognitionOptions blind = options;
-    blind.verify_neighbourhoods = false;
-    blind.retrieval.votes.min_baseline_meters = 1e3;
-    RecognitionOptions generous = options;
-    generous.neighbourhood.weights.bias += 50.;
-    RecognitionOptions by_paper = options;
-    by_paper.match.method = Method::kPaper;
-    RecognitionOptions by_ratio = options;
-    by_ratio.match.correspondence.use_ratio_test = true;
-    std::string text;
-    for (const RecognitionOptions& variant :
-         {options, blind, generous, by_paper, by_ratio}) {
-      text += drive.Recognize(variant, places) + "\n";
-    }
-    text += drive.Recognize(generous, featureless);
-    RetrievalOptions retrieval = options.retrieval;
-    retrieval.min_num_candidates = 1;
-    text += Candidates(retrieval, places);
-    retrieval.max_num_candidates =
-        1 + options.retrieval.max_num_candidates / 201;
-    text += Candidates(retrieval, places);
-    retrieval = options.retrieval;
-    retrieval.min_score = 1e9;
-    retrieval.min_num_candidates =
-        1 + options.retrieval.min_num_candidates / 11;
-    return text + Candidates(retrieval, places);
+  // Some act only where others have been set.
+  const auto with = [&](void (*set)(RecognitionOptions*)) {
+    return [&, set](const RecognitionOptions& options) {
+      RecognitionOptions changed = options;
+      set(&changed);
+      return drive.Recognize(changed, places);
+    };
   };
-  EXPECT_EQ(Listed(LeavesWithoutEffect(RecognitionOptions(), outcome)), "");
+  const auto alone = with([](RecognitionOptions* options) {
+    options->verify_neighbourhoods = false;
+  });
+  // An index that proposes nothing.
+  const auto blind = with([](RecognitionOptions* options) {
+    options->verify_neighbourhoods = false;
+    options->retrieval.votes.min_baseline_meters = 1e3;
+  });
+  const auto by_paper = with([](RecognitionOptions* options) {
+    options->match.method = Method::kPaper;
+  });
+  const std::vector<testing::Scenario<RecognitionOptions>> scenarios = {
+      {"",
+       [&](const RecognitionOptions& options) {
+         return drive.Recognize(options, places);
+       }},
+      {"match.", alone},
+      {"use_retrieval", blind},
+      {"match.correspondence.max_ratio", with([](RecognitionOptions* options) {
+         options->match.correspondence.use_ratio_test = true;
+       })},
+      {"match.ransac.", by_paper},
+      {"match.min_num_inliers", by_paper},
+      {"match.seed", by_paper},
+      {"neighbourhood.",
+       [&](const RecognitionOptions& options) {
+         RecognitionOptions generous = options;
+         generous.neighbourhood.weights.bias += 50.;
+         return drive.Recognize(options, places) +
+                drive.Recognize(generous, places) +
+                drive.Recognize(generous, featureless);
+       }},
+      {"retrieval.",
+       [&](const RecognitionOptions& options) {
+         RetrievalOptions retrieval = options.retrieval;
+         retrieval.min_num_candidates = 1;
+         return Candidates(retrieval, places);
+       }},
+      {"retrieval.min_num_candidates",
+       [&](const RecognitionOptions& options) {
+         RetrievalOptions retrieval = options.retrieval;
+         retrieval.min_score = 1e9;
+         retrieval.min_num_candidates =
+             1 + options.retrieval.min_num_candidates / 11;
+         return Candidates(retrieval, places);
+       }},
+      {"retrieval.max_num_candidates",
+       [&](const RecognitionOptions& options) {
+         RetrievalOptions retrieval = options.retrieval;
+         retrieval.min_num_candidates = 1;
+         retrieval.max_num_candidates =
+             1 + options.retrieval.max_num_candidates / 201;
+         return Candidates(retrieval, places);
+       }},
+  };
+  EXPECT_EQ(testing::OptionsWithoutEffect(RecognitionOptions(), scenarios), "");
+}
+
+// Passes over the tables whose options have a test that walks through all of
+// them, and lists all other options.
+struct UntestedOptions {
+  std::string paths;
+  std::string outer;
+
+  // Above.
+  void operator()(const char*, PlaceOptions&) {}
+  void operator()(const char*, RecognitionOptions&) {}
+  // closing_option_effects_test.cc
+  void operator()(const char*, ClosingOptions&) {}
+  // localization_option_effects_test.cc
+  void operator()(const char*, LocalizationOptions&) {}
+  void operator()(const char*, ScanPlaceOptions&) {}
+  void operator()(const char*, FoldCheckOptions&) {}
+  // audit_option_effects_test.cc
+  void operator()(const char*, AuditOptions&) {}
+  void operator()(const char*, ReportOptions&) {}
+
+  template <typename T>
+  void operator()(const char* const key, T& option) {
+    if constexpr (std::is_class_v<T>) {
+      const std::string before = outer;
+      outer += std::string(key) + ".";
+      VisitOptions(*this, option);
+      outer = before;
+    } else {
+      paths += outer + key + "\n";
+    }
+  }
+};
+
+TEST(OptionEffectsTest, EveryTableHasATest) {
+  Options options;
+  UntestedOptions untested;
+  VisitOptions(untested, options);
+  EXPECT_EQ(untested.paths, "");
 }
 
 }  // namespace

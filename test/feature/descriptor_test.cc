@@ -20,7 +20,7 @@ using testing::Rasterise;
 using testing::World;
 
 // Angles and weights of single precision, in a histogram of unit length.
-constexpr double kRounding = 1e-4;
+constexpr double kRounding = 1e-5;
 
 Keypoint At(const double x, const double y) {
   return {{x, y}, 0., KeypointKind::kMaximum, 1.};
@@ -120,8 +120,8 @@ TEST(DescribeKeypointsTest, EndsWithTwiceTheMeanDistanceInMetres) {
     EXPECT_GE(set.descriptors.col(k).head(17).minCoeff(), 0.f);
   }
   // The mean over a symmetric window of a linear field.
-  EXPECT_NEAR(set.descriptors(17, 0), 2. * (1.2 + 0.5), 1e-3);
-  EXPECT_NEAR(set.descriptors(17, 1), 2. * (0.7 + 0.5), 1e-3);
+  EXPECT_NEAR(set.descriptors(17, 0), 2. * (1.2 + 0.5), 1e-6);
+  EXPECT_NEAR(set.descriptors(17, 1), 2. * (0.7 + 0.5), 1e-6);
   DescriptorOptions options;
   options.distance_weight = 0.;
   EXPECT_EQ(Describe(WallBelow(), {At(0., 1.2)}, options).descriptors(17, 0),
@@ -195,14 +195,14 @@ TEST(DescribeKeypointsTest, OtherPeaksGiveFeaturesOfTheirOwn) {
   const Keypoint keypoint = At(0.02, -0.07);
   const FeatureSet one = Describe(field, {keypoint});
   ASSERT_EQ(one.features.size(), 1u);
-  EXPECT_LT(AngleBetween(one.features[0].orientation, M_PI_2), 0.01);
+  EXPECT_LT(AngleBetween(one.features[0].orientation, M_PI_2), 1e-6);
   DescriptorOptions options;
   options.secondary_orientation_ratio = 0.5;
   const FeatureSet two = Describe(field, {keypoint, keypoint}, options);
   ASSERT_EQ(two.features.size(), 4u);
   for (const int k : {0, 2}) {
-    EXPECT_LT(AngleBetween(two.features[k].orientation, M_PI_2), 0.01);
-    EXPECT_LT(AngleBetween(two.features[k + 1].orientation, -M_PI_2), 0.01);
+    EXPECT_LT(AngleBetween(two.features[k].orientation, M_PI_2), 1e-6);
+    EXPECT_LT(AngleBetween(two.features[k + 1].orientation, -M_PI_2), 1e-6);
     EXPECT_EQ(two.features[k].keypoint.position,
               two.features[k + 1].keypoint.position);
     EXPECT_EQ(two.descriptors.col(k), one.descriptors.col(0));

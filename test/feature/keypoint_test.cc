@@ -254,7 +254,7 @@ void ExpectAsBruteForce(const KeypointOptions& options,
     EXPECT_LE(off.abs().maxCoeff(), 0.5 + 1e-9);
     EXPECT_EQ(actual[k].kind, expected[k].kind);
     // Second differences of values up to 60 in single precision.
-    EXPECT_NEAR(actual[k].strength, expected[k].strength, 1e-4);
+    EXPECT_NEAR(actual[k].strength, expected[k].strength, 1e-5);
     EXPECT_NEAR(actual[k].clearance, SampleField(field, p_grid)->distance,
                 1e-9);
   }

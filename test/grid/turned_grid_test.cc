@@ -43,10 +43,10 @@ TEST(TurnedGridTest, TurnsTheContentAboutTheOrigin) {
     // Errors of some 450 cells' places are far below one cell in the mean.
     EXPECT_LT((after - Rigid2(0., 0., angle) * before).norm(), 0.02);
     // The area is kept, up to the disc's edge.
-    EXPECT_NEAR(num_after, num_before, 0.05 * num_before);
+    EXPECT_NEAR(num_after, num_before, 0.01 * num_before);
     const int known_before = static_cast<int>(grid.known.count());
     const int known_after = static_cast<int>(turned.known.count());
-    EXPECT_NEAR(known_after, known_before, 0.02 * known_before);
+    EXPECT_NEAR(known_after, known_before, 0.002 * known_before);
   }
 }
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <thread>
@@ -20,6 +19,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/live/host.h"
+#include "test/live/small_room.h"
 #include "test/testing/random_number.h"
 #include "test/testing/temporary_directory.h"
 
@@ -27,8 +27,7 @@ namespace cartographer_sdf::stress_test {
 namespace {
 
 namespace mapping = cartographer::mapping;
-using testing::FeedOdometry;
-using testing::FeedScan;
+using testing::EagerOptions;
 using testing::MakeStockOptions;
 using testing::SensorIds;
 using testing::UniformInt;
@@ -37,55 +36,6 @@ int NumNodes() {
   constexpr int kDefault = 600;
   const char* const text = std::getenv("SDF_STRESS_NODES");
   return text == nullptr ? kDefault : std::atoi(text);
-}
-
-// A room without symmetry, seen from a place within.
-Scan ScanOfARoom(const Rigid2& T_room_robot) {
-  constexpr float kStep = 0.12f;
-  Scan scan;
-  const Rigid2 T_robot_room = T_room_robot.Inverse();
-  const auto add = [&](const float x, const float y) {
-    scan.returns.push_back(
-        (T_robot_room * Eigen::Vector2d(x, y)).cast<float>());
-  };
-  for (float t = 0.f; t < 6.f; t += kStep) {
-    add(t, 0.f);
-    if (t < 5.f) add(0.f, t);
-    if (t < 3.f) {
-      add(6.f, t);
-      add(3.f + t, 3.f);
-      add(t, 5.f);
-    }
-    if (t < 2.f) add(3.f, 3.f + t);
-  }
-  return scan;
-}
-
-LiveOptions EagerOptions() {
-  LiveOptions options;
-  options.log_closures = false;
-  options.min_index_gap = 1;
-  options.retrieval.min_num_candidates = 3;
-  options.retrieval.max_num_candidates = 3;
-  JudgementOptions& judgement = options.match.verification.judgement;
-  judgement.min_overlap_area = 0.5;
-  judgement.min_score = -1000.;
-  judgement.min_margin = 0.;
-  judgement.min_scatter_eigenvalue = 0.;
-  options.consistency.min_unsupported_score = -1000.;
-  options.constraints.min_num_constraints = 1;
-  options.constraints.min_hit_ratio = 0.1;
-  options.localization.max_num_candidates = 3;
-  PlacementOptions& placement = options.localization.localizer.placement;
-  placement.min_score = 1e-3;
-  placement.min_lead = 0.;
-  placement.max_contradicting_fraction = 1.;
-  placement.min_observed_area = 0.5;
-  options.localization.min_num_queries = 1;
-  options.localization.query_interval_meters = 0.1;
-  options.localization.window_meters = 1.;
-  options.localization.resolution_meters = 0.1;
-  return options;
 }
 
 // Trims whatever it may, now and then: other people's trimmer.
@@ -125,14 +75,8 @@ class StressTest : public ::testing::Test {
 
   void Step(const size_t k) {
     Robot& robot = robots_[k];
-    // Round and round.
-    const double angle = robot.phase + 0.1 * robot.num_scans;
-    const Rigid2 T_room_robot(1.5 + 0.7 * std::cos(angle),
-                              1.5 + 0.7 * std::sin(angle), angle);
-    FeedOdometry(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
-                 T_room_robot);
-    FeedScan(map_builder_.get(), robot.trajectory_id, 0.3 * robot.num_scans,
-             ScanOfARoom(T_room_robot));
+    testing::FeedScanOfARoom(map_builder_.get(), robot.trajectory_id,
+                             robot.phase, robot.num_scans);
     ++robot.num_scans;
   }
 
@@ -171,27 +115,12 @@ class StressTest : public ::testing::Test {
   std::vector<int> finished_;
 };
 
-// What all hosts of the test share: submaps of two scans, and rounds as often
-// as `every_n_nodes` says.
 std::string StressLua(const int every_n_nodes, const bool trims_overlapping,
                       const bool matches_scans) {
-  std::string lines =
-      "MAP_BUILDER.collate_by_trajectory = true\n"
-      "POSE_GRAPH.constraint_builder.sampling_ratio = " +
-      std::string(matches_scans ? "0.02" : "0.") +
-      "\n"
-      "POSE_GRAPH.global_sampling_ratio = 0.\n"
-      "POSE_GRAPH.constraint_builder.min_score = 0.9\n"
-      "POSE_GRAPH.optimization_problem.ceres_solver_options."
-      "max_num_iterations = 3\n"
-      "POSE_GRAPH.max_num_final_iterations = 3\n"
-      "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 2\n"
-      "TRAJECTORY_BUILDER_2D.submaps.grid_options_2d.resolution = 0.1\n"
-      "TRAJECTORY_BUILDER_2D.ceres_scan_matcher.ceres_solver_options."
-      "max_num_iterations = 3\n"
-      "TRAJECTORY_BUILDER_2D.motion_filter.max_distance_meters = 0.01\n"
-      "POSE_GRAPH.optimize_every_n_nodes = " +
-      std::to_string(every_n_nodes) + "\n";
+  std::string lines = testing::SmallSubmapsLua(every_n_nodes);
+  if (matches_scans) {
+    lines += "POSE_GRAPH.constraint_builder.sampling_ratio = 0.02\n";
+  }
   if (trims_overlapping) {
     lines +=
         "POSE_GRAPH.overlapping_submaps_trimmer_2d = { fresh_submaps_count = "

@@ -19,7 +19,7 @@ namespace {
 using testing::RandomFeatures;
 
 // Differences of squared norms of some 10 in single precision.
-constexpr double kRounding = 1e-3;
+constexpr double kRounding = 1e-5;
 
 // Every reference feature that may correspond to a query feature, with its
 // distance.

@@ -17,35 +17,14 @@
 namespace cartographer_sdf::pose_voter_test {
 namespace {
 
-using testing::AddOutliers;
 using testing::Identity;
+using testing::MakeMatchingProblem;
 using testing::Moved;
 using testing::RandomFeatures;
 using testing::Shuffle;
 using testing::Uniform;
 
-struct Problem {
-  FeatureSet reference, query;
-  std::vector<Correspondence> correspondences;
-};
-
-// `noise` [m] of positions, and as many radians of orientations.
-Problem MakeProblem(const Rigid2& T_reference_query, const int num_inliers,
-                    const int num_outliers, const double noise = 0.) {
-  std::mt19937 engine(42);
-  Problem problem;
-  problem.query = RandomFeatures(num_inliers, 20., 1, &engine);
-  problem.reference = Moved(T_reference_query, problem.query);
-  for (Feature& feature : problem.reference.features) {
-    feature.keypoint.position.x() += Uniform(-noise, noise, &engine);
-    feature.keypoint.position.y() += Uniform(-noise, noise, &engine);
-    feature.orientation =
-        NormalizeAngle(feature.orientation + Uniform(-noise, noise, &engine));
-  }
-  problem.correspondences = Identity(num_inliers);
-  AddOutliers(num_outliers, num_inliers, &engine, &problem.correspondences);
-  return problem;
-}
+using Problem = testing::MatchingProblem;
 
 std::vector<Rigid2> Propose(const Problem& problem,
                             const HypothesisOptions& options = {}) {
@@ -72,7 +51,8 @@ TEST(ProposePosesTest, ExactCorrespondencesGiveThePose) {
   constexpr double kRounding = 1e-5;
   for (int degrees = -180; degrees <= 180; degrees += 5) {
     const Rigid2 truth(3.2, -1.1, degrees * M_PI / 180.);
-    const std::vector<Rigid2> hypotheses = Propose(MakeProblem(truth, 20, 0));
+    const std::vector<Rigid2> hypotheses =
+        Propose(MakeMatchingProblem(truth, 20, 0));
     // Rounding may spread them over neighbouring cells.
     EXPECT_GE(RankOf(truth, hypotheses, kRounding, kRounding), 0) << degrees;
     EXPECT_EQ(RankOf(truth, hypotheses, kRounding, kRounding), 0) << degrees;
@@ -84,7 +64,7 @@ TEST(ProposePosesTest, HalfATurnIsNotAveragedWithItsNegative) {
   // angles just beyond on either side.
   for (const double noise : {0., 1e-7, 1e-3, 0.02}) {
     const Rigid2 truth(2., 1., M_PI);
-    const Problem problem = MakeProblem(truth, 40, 0, noise);
+    const Problem problem = MakeMatchingProblem(truth, 40, 0, noise);
     const Rigid2 best = Propose(problem).front();
     EXPECT_GT(std::abs(best.rotation()), M_PI - 0.11) << noise;
     EXPECT_EQ(RankOf(truth, Propose(problem)), 0) << noise;
@@ -110,7 +90,8 @@ TEST(ProposePosesTest, HalfATurnIsNotAveragedWithItsNegative) {
 TEST(ProposePosesTest, ThePoseIsAmongTheFirstWithNinetyPercentOutliers) {
   for (int degrees = -180; degrees < 180; degrees += 20) {
     const Rigid2 truth(-4., 9., degrees * M_PI / 180.);
-    const int rank = RankOf(truth, Propose(MakeProblem(truth, 50, 450, 0.05)));
+    const int rank =
+        RankOf(truth, Propose(MakeMatchingProblem(truth, 50, 450, 0.05)));
     EXPECT_GE(rank, 0) << degrees;
     EXPECT_LT(rank, 3) << degrees;
   }
@@ -139,7 +120,7 @@ TEST(ProposePosesTest, ASymmetricPlaceYieldsBothPoses) {
 
 TEST(ProposePosesTest, NeedsAgreementInLengthOrientationAndBaseline) {
   const Rigid2 truth(0., 0., 3.1);  // near the cut of angles
-  Problem pair = MakeProblem(truth, 2, 0);
+  Problem pair = MakeMatchingProblem(truth, 2, 0);
   const auto place = [&](const double query, const double reference,
                          const double turn) {
     pair.query.features[0].keypoint.position = {0., 0.};
@@ -169,7 +150,7 @@ TEST(ProposePosesTest, NeedsAgreementInLengthOrientationAndBaseline) {
 }
 
 TEST(ProposePosesTest, IgnoresTheOrderOfTheCorrespondences) {
-  Problem problem = MakeProblem(Rigid2(1., 2., -3.), 40, 300, 0.05);
+  Problem problem = MakeMatchingProblem(Rigid2(1., 2., -3.), 40, 300, 0.05);
   const std::vector<Rigid2> expected = Propose(problem);
   std::mt19937 engine(7);
   for (int repetition = 0; repetition < 3; ++repetition) {
@@ -185,7 +166,7 @@ TEST(ProposePosesTest, IgnoresTheOrderOfTheCorrespondences) {
 
 TEST(ProposePosesTest, MovingTheQueryMovesThePosesInversely) {
   const Rigid2 truth(1., 2., 0.5);
-  Problem problem = MakeProblem(truth, 40, 100, 0.03);
+  Problem problem = MakeMatchingProblem(truth, 40, 100, 0.03);
   const std::vector<Rigid2> before = Propose(problem);
   const FeatureSet query = problem.query;
   for (const Rigid2& T_new_old :
@@ -205,8 +186,8 @@ TEST(ProposePosesTest, MovingTheQueryMovesThePosesInversely) {
 
 TEST(ProposePosesTest, NoneFromLessThanAPair) {
   EXPECT_TRUE(Propose(Problem()).empty());
-  EXPECT_TRUE(Propose(MakeProblem({}, 1, 0)).empty());
-  Problem same = MakeProblem({}, 3, 0);
+  EXPECT_TRUE(Propose(MakeMatchingProblem({}, 1, 0)).empty());
+  Problem same = MakeMatchingProblem({}, 3, 0);
   same.correspondences.assign(10, {1, 1, 0.1f});
   EXPECT_TRUE(Propose(same).empty());
 }
@@ -214,7 +195,7 @@ TEST(ProposePosesTest, NoneFromLessThanAPair) {
 TEST(ProposePosesTest, SurvivesPlacesThatAreAbsurdlyFar) {
   for (const double far : {1e6, 1e12, 1e30, -1e30}) {
     EXPECT_NO_FATAL_FAILURE(
-        (void)Propose(MakeProblem(Rigid2(far, 0.5 * far, 1.), 5, 0)));
+        (void)Propose(MakeMatchingProblem(Rigid2(far, 0.5 * far, 1.), 5, 0)));
   }
 }
 

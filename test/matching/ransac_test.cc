@@ -17,35 +17,19 @@
 namespace cartographer_sdf::ransac_test {
 namespace {
 
-using testing::AddOutliers;
 using testing::Identity;
 using testing::Moved;
 using testing::RandomFeatures;
 using testing::Shuffle;
-using testing::Uniform;
 
 constexpr double kExact = 1e-9;
 const Rigid2 kPose(7., -4., 2.9);  // T_reference_query
 
-struct Problem {
-  FeatureSet reference, query;
-  std::vector<Correspondence> correspondences;
-};
+using Problem = testing::MatchingProblem;
 
-// Correspondence k < num_inliers is true, all others are false.
 Problem MakeProblem(const int num_inliers, const int num_outliers,
                     const double noise = 0.) {
-  std::mt19937 engine(42);
-  Problem problem;
-  problem.query = RandomFeatures(num_inliers, 20., 1, &engine);
-  problem.reference = Moved(kPose, problem.query);
-  for (Feature& feature : problem.reference.features) {
-    feature.keypoint.position.x() += Uniform(-noise, noise, &engine);
-    feature.keypoint.position.y() += Uniform(-noise, noise, &engine);
-  }
-  problem.correspondences = Identity(num_inliers);
-  AddOutliers(num_outliers, num_inliers, &engine, &problem.correspondences);
-  return problem;
+  return testing::MakeMatchingProblem(kPose, num_inliers, num_outliers, noise);
 }
 
 std::optional<Alignment> Align(const Problem& problem,

@@ -129,7 +129,7 @@ TEST(SurfaceModelTest, ObservedPointsStandForTheObservedArea) {
   const double area = static_cast<double>(grid.known.count()) * 0.05 * 0.05;
   EXPECT_NEAR(static_cast<double>(model->observed_points.size()) *
                   model->area_per_observed_point,
-              area, 0.03 * area);
+              area, 0.003 * area);
 }
 
 TEST(SurfaceModelTest, NoneWithoutWalls) {

@@ -58,7 +58,7 @@ TEST(RotationFirstPosesTest, FindsConsistentPosesFromAnyStart) {
   ASSERT_TRUE(poses.has_value());
   EXPECT_EQ((*poses)[0], truth.poses[0]);
   // All residuals can vanish, so the solver goes on to rounding.
-  EXPECT_LT(MaxError(*poses, truth.poses), 1e-3);
+  EXPECT_LT(MaxError(*poses, truth.poses), 1e-9);
 }
 
 TEST(RotationFirstPosesTest, TurnsATrajectoryAroundUnderNoise) {
@@ -77,8 +77,8 @@ TEST(RotationFirstPosesTest, TurnsATrajectoryAroundUnderNoise) {
   ASSERT_TRUE(poses.has_value());
   graph.poses = *poses;
   // A round of 100 m bends by some sqrt(150) * 1e-3 rad.
-  EXPECT_LT(MaxError(graph.poses, truth.poses), 1.);
-  EXPECT_LT(SpaCost(graph, kHuberScale), 0.01 * cost);
+  EXPECT_LT(MaxError(graph.poses, truth.poses), 0.3);
+  EXPECT_LT(SpaCost(graph, kHuberScale), 0.003 * cost);
 }
 
 TEST(RotationFirstPosesTest, KeepsConstantPoses) {

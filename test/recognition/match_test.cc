@@ -103,11 +103,11 @@ TEST_P(MatchPlacesTest, FillsInTheEvidence) {
     return;
   }
   EXPECT_GT(match->pair.score, 3.);
-  EXPECT_NEAR(evidence.overlap_area, 36., 8.);
+  EXPECT_NEAR(evidence.overlap_area, 36., 1.);
   EXPECT_GT(evidence.overlap, 0.9);
   EXPECT_GT(evidence.HitRatio(), 0.9);
   EXPECT_LE(evidence.HitRatio(), 1.);
-  EXPECT_LT(evidence.ContradictionRatio(), 0.02);
+  EXPECT_LT(evidence.ContradictionRatio(), 0.004);
   EXPECT_GT(evidence.WallDistance(), 0.);
   EXPECT_LT(evidence.WallDistance(), 0.05);
   EXPECT_EQ(match->pair.score, match->pair_score);

@@ -32,8 +32,8 @@ TEST(NeighbourhoodTest, NeighboursOfTheRightPoseAgree) {
   const Neighbourhood right = Ask(visits, visits.T_west_first_west_again());
   // Each with its own room, at the least.
   EXPECT_GE(right.evidence.num_pairs, 1);
-  // Half of the room's walls, from both sides.
-  EXPECT_GT(right.evidence.wall_length, 15.);
+  // Most of the walls of both rooms, from both sides.
+  EXPECT_NEAR(right.evidence.wall_length, 90., 5.);
   EXPECT_LT(right.evidence.contradicting_length,
             0.03 * right.evidence.wall_length);
   EXPECT_LT(LogContradiction(NeighbourhoodOptions(), right.evidence), 0.);

@@ -4,6 +4,8 @@
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
 
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,7 @@ using testing::IsPoseNear;
 using testing::TwoVisits;
 
 constexpr double kDegree = M_PI / 180.;
+constexpr double kHalfACell = 0.025;
 
 void Forwards(const size_t n, const std::function<void(size_t)>& task) {
   for (size_t k = 0; k != n; ++k) task(k);
@@ -127,6 +130,111 @@ TEST(VerifyNeighbourhoodsTest, DoesNotDependOnTheOrderOfWork) {
 TEST(VerifyNeighbourhoodsTest, NothingFromNothing) {
   const TwoVisits visits;
   EXPECT_TRUE(Judged(visits, {}).empty());
+}
+
+TEST(VerifyNeighbourhoodsTest, ChoosesTheRivalThatNeighboursAgreeWith) {
+  const TwoVisits visits;
+  Match match = WestMatch(visits).front();
+  // One door further, and the right pose as a rival.
+  match.rivals = {match.pair.T_reference_query};
+  match.pair.T_reference_query =
+      visits.T_world_submap(TwoVisits::kWestFirst).Inverse() *
+      Rigid2(2., 0.5, 0.) * visits.T_world_submap(TwoVisits::kWestAgain);
+  NeighbourhoodOptions options;
+  options.min_proposing_score = -1e3;
+  const std::vector<Match> judged =
+      VerifyNeighbourhoods(options, MatchOptions(), visits.Places(),
+                           visits.Places(), 3, {match}, &Forwards);
+  const Match* const west =
+      Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
+  ASSERT_NE(west, nullptr);
+  EXPECT_THAT(
+      west->pair.T_reference_query,
+      IsPoseNear(visits.T_west_first_west_again(), kHalfACell, 0.2 * kDegree));
+  EXPECT_STREQ(VerdictName(west->verdict), "accepted");
+}
+
+TEST(VerifyNeighbourhoodsTest, UnlikelyMatchesProposeNothing) {
+  const TwoVisits visits;
+  NeighbourhoodOptions options;
+  options.min_proposing_score = 1e3;
+  const std::vector<Match> judged =
+      VerifyNeighbourhoods(options, MatchOptions(), visits.Places(),
+                           visits.Places(), 3, WestMatch(visits), &Forwards);
+  ASSERT_EQ(judged.size(), 1u);
+  EXPECT_EQ(judged[0].pair.query, TwoVisits::kWestAgain);
+}
+
+// Between two maps, the map stays the reference whatever the ids.
+TEST(VerifyNeighbourhoodsTest, ProposalsBetweenMapsKeepTheirSides) {
+  const TwoVisits visits;
+  std::map<SubmapId, Place> first, again;
+  for (const auto& [id, place] : *visits.Places().places) {
+    (id < TwoVisits::kWestAgain ? first : again).emplace(id, place);
+  }
+  const auto& odometry = visits.Places().odometry;
+  Match turned = WestMatch(visits).front();
+  std::swap(turned.pair.reference, turned.pair.query);
+  turned.pair.T_reference_query = turned.pair.T_reference_query.Inverse();
+  const std::vector<Match> judged = VerifyNeighbourhoods(
+      NeighbourhoodOptions(), MatchOptions(), {&again, odometry},
+      {&first, odometry}, std::nullopt, {turned}, &Forwards);
+  const Match* const east =
+      Find(judged, TwoVisits::kEastAgain, TwoVisits::kEastFirst);
+  ASSERT_NE(east, nullptr);
+  EXPECT_THAT(
+      east->pair.T_reference_query,
+      IsPoseNear(visits.T_world_submap(TwoVisits::kEastAgain).Inverse() *
+                     visits.T_world_submap(TwoVisits::kEastFirst),
+                 kHalfACell, 0.2 * kDegree));
+}
+
+TEST(VerifyNeighbourhoodTest, FillsInScoreVerdictAndEvidence) {
+  const TwoVisits visits;
+  const NeighbourhoodOptions options;
+  const MatchOptions match_options;
+  Match match = WestMatch(visits).front();
+  const Match before = match;
+  VerifyNeighbourhood(options, match_options, visits.Places(), visits.Places(),
+                      3, &match);
+  const NeighbourhoodEvidence expected =
+      MeasureNeighbourhood(options, match_options.verification, visits.Places(),
+                           visits.Places(), 3, before.pair)
+          .evidence;
+  ASSERT_TRUE(match.neighbourhood.has_value());
+  ASSERT_GE(expected.num_pairs, 1);
+  EXPECT_EQ(match.neighbourhood->num_pairs, expected.num_pairs);
+  EXPECT_EQ(match.neighbourhood->wall_length, expected.wall_length);
+  EXPECT_EQ(match.neighbourhood->contradicting_length,
+            expected.contradicting_length);
+  EXPECT_EQ(match.pair_score, before.pair_score);
+  EXPECT_EQ(match.pair.score,
+            NeighbourhoodScore(options, before.pair_score, expected));
+  EXPECT_EQ(match.verdict,
+            Judge(match_options.verification.judgement, before.evidence,
+                  match.pair.score, before.margin));
+  EXPECT_EQ(match.pair.T_reference_query.translation(),
+            before.pair.T_reference_query.translation());
+  EXPECT_EQ(match.verdict, Verdict::kAccepted);
+  // The score in the neighbourhood is the one that is judged.
+  MatchOptions strict = match_options;
+  strict.verification.judgement.min_score = match.pair.score + 1e-6;
+  VerifyNeighbourhood(options, strict, visits.Places(), visits.Places(), 3,
+                      &match);
+  EXPECT_EQ(match.verdict, Verdict::kUnlikely);
+}
+
+TEST(VerifyNeighbourhoodTest, TheUnlikelyIsNotMeasured) {
+  const TwoVisits visits;
+  NeighbourhoodOptions options;
+  Match match = WestMatch(visits).front();
+  options.min_pair_score = match.pair_score + 1e-6;
+  VerifyNeighbourhood(options, MatchOptions(), visits.Places(), visits.Places(),
+                      3, &match);
+  ASSERT_TRUE(match.neighbourhood.has_value());
+  EXPECT_EQ(match.neighbourhood->num_pairs, 0);
+  EXPECT_EQ(match.pair.score,
+            NeighbourhoodScore(options, match.pair_score, {}));
 }
 
 }  // namespace

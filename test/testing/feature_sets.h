@@ -65,6 +65,32 @@ inline void AddOutliers(const int count, const int num_features,
   }
 }
 
+struct MatchingProblem {
+  FeatureSet reference, query;
+  std::vector<Correspondence> correspondences;
+};
+
+// Correspondence k < num_inliers is true, all others are false. `noise` [m] of
+// positions, and as many radians of orientations.
+inline MatchingProblem MakeMatchingProblem(const Rigid2& T_reference_query,
+                                           const int num_inliers,
+                                           const int num_outliers,
+                                           const double noise = 0.) {
+  std::mt19937 engine(42);
+  MatchingProblem problem;
+  problem.query = RandomFeatures(num_inliers, 20., 1, &engine);
+  problem.reference = Moved(T_reference_query, problem.query);
+  for (Feature& feature : problem.reference.features) {
+    feature.keypoint.position.x() += Uniform(-noise, noise, &engine);
+    feature.keypoint.position.y() += Uniform(-noise, noise, &engine);
+    feature.orientation =
+        NormalizeAngle(feature.orientation + Uniform(-noise, noise, &engine));
+  }
+  problem.correspondences = Identity(num_inliers);
+  AddOutliers(num_outliers, num_inliers, &engine, &problem.correspondences);
+  return problem;
+}
+
 template <typename T>
 void Shuffle(std::vector<T>* const items, std::mt19937* const engine) {
   for (int k = static_cast<int>(items->size()); k > 1; --k) {

@@ -22,8 +22,6 @@ constexpr int kSlippedNode = 9 * 60 + 30;
 // (before <- after), as seen from the robot.
 inline Rigid2 SlipPose() { return Rigid2(0.4, 0.5, 0.05); }
 
-namespace internal {
-
 // Draws the grids anew from where local SLAM has the nodes.
 inline void DrawGrids(SimulatedMap* const map) {
   for (SimulatedSubmap& submap : map->submaps) {
@@ -40,8 +38,6 @@ inline void DrawGrids(SimulatedMap* const map) {
     submap.grid = grid.Crop();
   }
 }
-
-}  // namespace internal
 
 // A drive through an invented office. Where local SLAM slips, it does so once,
 // by 0.64 m and 0.05 rad as seen from the robot, in the middle of the 60 scans
@@ -60,7 +56,7 @@ inline void WriteOffice(const Slip slip, const std::string& path) {
       map->nodes[k].T_local_node = T_before_after * map->nodes[k].T_local_node;
     }
   }
-  internal::DrawGrids(&*map);
+  DrawGrids(&*map);
   const absl::Status status =
       WriteSimulatedMap(*map, path, path + ".truth.csv");
   CHECK(status.ok()) << status;

@@ -77,8 +77,8 @@ TEST(FindTearTest, TellsByHowMuchTheScansSlipped) {
     // Where the robot was, half a cell and what that is over the room's width.
     const Rigid2 error = tear->T_first_second * T_before_after;
     const Eigen::Vector2d middle = T_submap_world * Eigen::Vector2d(3.5, 2.5);
-    EXPECT_LE((error * middle - middle).norm(), 0.05) << slip;
-    EXPECT_LE(std::abs(error.rotation()), 0.8 * kDegree) << slip;
+    EXPECT_LE((error * middle - middle).norm(), 0.03) << slip;
+    EXPECT_LE(std::abs(error.rotation()), 0.3 * kDegree) << slip;
     const Rigid2 after_before = T_before_after.Inverse();
     EXPECT_NEAR(tear->translation, (after_before * middle - middle).norm(),
                 0.15)

@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// No option of localising, of drawing places from scans and of looking for
+// folds in merged maps is without effect.
+
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cartographer_sdf/apps/fold_check.h"
+#include "cartographer_sdf/execution/parallel_for.h"
+#include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_places.h"
+#include "gtest/gtest.h"
+#include "test/testing/option_effects.h"
+#include "test/testing/visited_rooms.h"
+
+namespace cartographer_sdf::localization_option_effects_test {
+namespace {
+
+using testing::VisitedRooms;
+
+// Walls of the east room stand in its free space.
+const Rigid2 kMisplaced(1.4, 1.2, 0.05);
+
+std::string Text(const Localization& localization) {
+  std::ostringstream text;
+  text.precision(17);
+  text << localization.reason << " " << localization.score.value_or(-1.) << " "
+       << localization.runner_up_score.value_or(-1.) << " "
+       << localization.num_agreeing << " " << localization.num_contradicting
+       << " " << localization.matches.size() << "\n";
+  for (const Placement& placement : localization.placements) {
+    text << placement.T_map_query.translation().transpose() << " "
+         << placement.score << " " << placement.votes.size() << " "
+         << placement.is_rival << "\n";
+  }
+  return text.str();
+}
+
+class LocalizationOptionEffectsTest : public ::testing::Test {
+ protected:
+  LocalizationOptionEffectsTest() {
+    for (const auto& [id, place] : rooms_.map().places) {
+      (IsOfFirstVisit(id) ? first_ : again_).emplace(id, place);
+    }
+  }
+
+  static bool IsOfFirstVisit(const SubmapId& id) {
+    return id < VisitedRooms::kWestAgain;
+  }
+  // Of the query's submaps one is found in the map for sure, a little off, and
+  // elsewhere; the other is left to confirmation.
+  [[nodiscard]] std::vector<Match> MatchesOfOne() const {
+    return {rooms_.MakeMatch(VisitedRooms::kWestFirst, VisitedRooms::kWestAgain,
+                             9.),
+            rooms_.MakeMatch(VisitedRooms::kWestFirst, VisitedRooms::kWestAgain,
+                             3., Rigid2(0.6, 0., 0.12)),
+            rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kWestAgain,
+                             4., Rigid2(7., 3., 2.))};
+  }
+  [[nodiscard]] std::string Locate(
+      const LocalizationOptions& options, const std::vector<Match>& matches,
+      const Rigid2& error_of_east = Rigid2()) const {
+    const DescribedMap& map = rooms_.map();
+    const MapLayout layout =
+        MakeMapLayout(map.state.pose_graph, map.odometry, map.places);
+    MapLayout query_layout = layout;
+    Rigid2& east = query_layout.T_map_submap.at(VisitedRooms::kEastAgain);
+    east = error_of_east * east;
+    // Well-made maps, which tell where the other room must be.
+    ConsistencyOptions consistency;
+    consistency.rotation_sigma_per_sqrt_meter = 0.001;
+    const PlaceMatcher matcher = [&matches](
+                                     const std::map<SubmapId, Place>& queries,
+                                     const ProgressCallback&) {
+      std::vector<Match> found;
+      for (const Match& match : matches) {
+        if (queries.count(match.pair.query) > 0) found.push_back(match);
+      }
+      return found;
+    };
+    return Text(Localize(options, consistency, MatchOptions(),
+                         {&first_, &layout}, {&again_, &query_layout}, matcher,
+                         MakeExecutor(1)));
+  }
+
+  const VisitedRooms rooms_;
+  std::map<SubmapId, Place> first_, again_;
+};
+
+TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
+  std::vector<Match> matches_of_both = MatchesOfOne();
+  matches_of_both.push_back(
+      rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kEastAgain, 6.));
+  const std::vector<testing::Scenario<LocalizationOptions>> scenarios = {
+      {"",
+       [&](const LocalizationOptions& options) {
+         return Locate(options, MatchesOfOne());
+       }},
+      {"placement.max_contradicting_fraction",
+       [&](const LocalizationOptions& options) {
+         return Locate(options, MatchesOfOne(), kMisplaced);
+       }},
+      // Where either submap is enough.
+      {"num_first_places", [&](const LocalizationOptions& options) {
+         LocalizationOptions easy = options;
+         easy.placement.min_score = 1.;
+         easy.placement.min_lead = 0.;
+         easy.max_num_confirmed_pairs = 0;
+         return Locate(easy, matches_of_both);
+       }}};
+  EXPECT_EQ(testing::OptionsWithoutEffect(LocalizationOptions(), scenarios),
+            "");
+}
+
+TEST_F(LocalizationOptionEffectsTest, NoneOfScanPlacesIsWithout) {
+  ScanPlaceOptions base;
+  base.num_scans = 12;
+  const std::vector<testing::Scenario<ScanPlaceOptions>> scenarios = {
+      {"", [this](const ScanPlaceOptions& options) {
+         const DescribedMap& map = rooms_.map();
+         const ScanMap scans =
+             DescribeScans(options, PlaceOptions(), MatchOptions(), map.state,
+                           map.point_clouds, {0., 12.}, MakeExecutor(1));
+         std::ostringstream text;
+         text.precision(9);
+         for (const auto& [id, grid] : scans.grids) {
+           text << id << " " << grid.geometry.size.transpose() << " "
+                << grid.probability.sum() << "\n";
+         }
+         return text.str();
+       }}};
+  EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
+}
+
+// The two visits as sessions, of which the second was laid wrong.
+TEST_F(LocalizationOptionEffectsTest, NoneOfTheFoldCheckIsWithout) {
+  JoinedSessions joined;
+  PoseGraph merged;
+  for (const auto& [id, place] : rooms_.map().places) {
+    const int session = IsOfFirstVisit(id) ? 0 : 1;
+    Place renamed = place;
+    renamed.id = {session, id.index};
+    joined.places.emplace(renamed.id, renamed);
+    Rigid2 T_map_submap = rooms_.T_world_submap(id);
+    if (id == VisitedRooms::kEastAgain) {
+      T_map_submap = kMisplaced * T_map_submap;
+    }
+    merged.submap_poses[renamed.id] = T_map_submap;
+    joined.session_of_trajectory[session] = static_cast<size_t>(session);
+  }
+  joined.state.pose_graph = merged;
+  const Session first{"first", {}, {}}, second{"second", {}, {}};
+  const std::vector<testing::Scenario<FoldCheckOptions>> scenarios = {
+      {"", [&](const FoldCheckOptions& options) {
+         const auto overlaps = CheckOverlaps(options, RecognitionOptions(),
+                                             joined, merged, MakeExecutor(1));
+         size_t num_contradictions = 0;
+         for (const auto& [ids, overlap] : overlaps) {
+           num_contradictions += overlap.contradictions.size();
+         }
+         return std::to_string(num_contradictions) +
+                DescribeFold(options, overlaps, {&first, &second});
+       }}};
+  FoldCheckOptions base;
+  base.max_folded_fraction = 0.3;
+  EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
+}
+
+}  // namespace
+}  // namespace cartographer_sdf::localization_option_effects_test
