@@ -186,7 +186,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         },
         -- Submaps with a lower score are not matched. Larger: faster, less
         -- recall.
-        min_score = 0.04,
+        min_score = 0.06,
         -- The best so many are matched whatever their score, and never more
         -- than max_num_candidates.
         min_num_candidates = 10,

@@ -34,7 +34,7 @@ struct RetrievalOptions {
   double max_clearance_difference_meters = 0.2;
   PoseVotingOptions votes = {250, 0.25, 0.35, 1., 0.75, 0.2};
   // Candidates with a lower score are left out, ...
-  double min_score = 0.04;
+  double min_score = 0.06;
   // ... but never the best so many. There are never more than the most.
   int min_num_candidates = 10;
   int max_num_candidates = 200;

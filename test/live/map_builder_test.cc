@@ -354,9 +354,10 @@ TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
   live->WaitUntilIdle();
   EXPECT_EQ(live->GetLocalization(trajectory_id)->verdict,
             LocalizationVerdict::kTooLittleSeen);
-  // A corridor without ends is everywhere and nowhere.
+  // A corridor without ends, of more than the least area, is everywhere and
+  // nowhere.
   Scan corridor;
-  for (int k = -40; k <= 40; ++k) {
+  for (int k = -120; k <= 120; ++k) {
     const float x = 0.1f * static_cast<float>(k);
     corridor.returns.emplace_back(x, 0.9f);
     corridor.returns.emplace_back(x, -0.9f);
