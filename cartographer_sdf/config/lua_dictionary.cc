@@ -7,17 +7,17 @@
 #include "cartographer_sdf/config/lua_dictionary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <set>
-#include <string_view>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "cartographer_sdf/config/lua_value.h"
 
 extern "C" {
 #include <lauxlib.h>
@@ -34,6 +34,11 @@ namespace {
 constexpr size_t kMaxFileSize = size_t{1} << 20;
 constexpr size_t kMaxAllocated = size_t{16} << 20;
 constexpr int kMaxInstructions = 1000000;
+constexpr int kMaxDepth = 16;
+// Of all values with their paths, in characters: tables and strings that occur
+// in several places count as often.
+constexpr size_t kMaxSize = 1000000;
+constexpr size_t kMaxLineLength = 300;
 
 // What configuration files may call. Not in it on purpose: files (io, os, load,
 // dofile), chance (math.random), catching the errors that enforce the limits
@@ -51,8 +56,6 @@ constexpr std::string_view kStringFunctions[] = {"format", "len", "lower",
 constexpr std::string_view kTableFunctions[] = {"concat", "insert", "remove",
                                                 "unpack"};
 
-enum class LoadResult { kLoaded, kLoadedBefore, kFailed };
-
 struct Loader {
   std::vector<std::string> directories;
   std::string basename;
@@ -63,10 +66,12 @@ struct Loader {
   std::string content;
   std::string error;
 
+  bool IsLoaded(const char* name) const { return loaded.count(name) != 0; }
+  // False with an error.
   bool Find(const std::string& name);
   bool ReadFile(const std::string& name);
   // Pushes the chunk of the file, or nothing.
-  LoadResult Load(lua_State* lua, const char* name);
+  bool Load(lua_State* lua, const char* name);
 };
 
 bool Loader::Find(const std::string& name) {
@@ -101,19 +106,18 @@ bool Loader::ReadFile(const std::string& name) {
   return true;
 }
 
-LoadResult Loader::Load(lua_State* const lua, const char* const name) {
-  if (loaded.count(name) != 0) return LoadResult::kLoadedBefore;
-  if (!ReadFile(name)) return LoadResult::kFailed;
+bool Loader::Load(lua_State* const lua, const char* const name) {
+  if (!ReadFile(name)) return false;
   loaded.insert(name);
   const std::string chunk_name = absl::StrCat("@", name);
   // Text only: the interpreter does not verify byte code.
   if (luaL_loadbufferx(lua, content.data(), content.size(), chunk_name.c_str(),
                        "t") == LUA_OK) {
-    return LoadResult::kLoaded;
+    return true;
   }
   error = lua_type(lua, -1) == LUA_TSTRING ? lua_tostring(lua, -1) : "";
   lua_pop(lua, 1);
-  return LoadResult::kFailed;
+  return false;
 }
 
 // Counts what was ever allocated, not what is in use, to bound the time too.
@@ -140,16 +144,13 @@ int Include(lua_State* const lua) {
   Loader* const loader =
       static_cast<Loader*>(lua_touserdata(lua, lua_upvalueindex(1)));
   luaL_checktype(lua, 1, LUA_TSTRING);
-  switch (loader->Load(lua, lua_tostring(lua, 1))) {
-    case LoadResult::kLoaded:
-      lua_call(lua, 0, 0);
-      return 0;
-    case LoadResult::kLoadedBefore:
-      return 0;
-    case LoadResult::kFailed:
-      break;
+  const char* const name = lua_tostring(lua, 1);
+  if (loader->IsLoaded(name)) return 0;
+  if (!loader->Load(lua, name)) {
+    return luaL_error(lua, "%s", loader->error.c_str());
   }
-  return luaL_error(lua, "%s", loader->error.c_str());
+  lua_call(lua, 0, 0);
+  return 0;
 }
 
 // Removes everything else from the table on top of the stack, and pops it.
@@ -183,7 +184,7 @@ int RunFile(lua_State* const lua) {
   lua_pushcclosure(lua, Include, 1);
   lua_setglobal(lua, "include");
 
-  if (loader->Load(lua, loader->basename.c_str()) != LoadResult::kLoaded) {
+  if (!loader->Load(lua, loader->basename.c_str())) {
     lua_pushstring(lua, loader->error.c_str());
     return lua_error(lua);
   }
@@ -198,7 +199,94 @@ std::string DescribeError(lua_State* const lua, const int status) {
   return PrintableLine(lua_tostring(lua, -1));
 }
 
+// Converts Lua values by calls that cannot raise.
+class Converter {
+ public:
+  explicit Converter(lua_State* const lua) : lua_(lua) {}
+
+  // Adds the value on top of the stack, which has that path.
+  [[nodiscard]] bool Add(const std::string& path);
+
+  std::map<std::string, LuaValue> values;
+  std::string error;
+
+ private:
+  bool AddFields(const std::string& path);
+  bool Fail(const std::string& path, const std::string& reason) {
+    error = absl::StrCat(PrintableLine(path), " ", reason);
+    return false;
+  }
+
+  lua_State* const lua_;
+  int depth_ = 0;
+  size_t size_ = 0;
+};
+
+bool Converter::Add(const std::string& path) {
+  size_ += 1 + path.size();
+  if (size_ > kMaxSize) return Fail(path, "is too much to be a configuration");
+  LuaValue& value = values[path];
+  switch (lua_type(lua_, -1)) {
+    case LUA_TBOOLEAN:
+      value = lua_toboolean(lua_, -1) != 0;
+      return true;
+    case LUA_TNUMBER: {
+      const double number = lua_tonumber(lua_, -1);
+      value = number;
+      return std::isfinite(number) || Fail(path, "must be a finite number");
+    }
+    case LUA_TSTRING: {
+      size_t size = 0;
+      const char* const text = lua_tolstring(lua_, -1, &size);
+      if (size > kMaxSize) return Fail(path, "is too long a text");
+      size_ += size;
+      value = std::string(text, size);
+      return true;
+    }
+    case LUA_TTABLE:
+      return AddFields(path);
+    default:
+      return Fail(path, absl::StrCat("must not be a ",
+                                     lua_typename(lua_, lua_type(lua_, -1))));
+  }
+}
+
+bool Converter::AddFields(const std::string& path) {
+  if (depth_ == kMaxDepth || !lua_checkstack(lua_, 4)) {
+    return Fail(path, "is nested too deeply or contains itself");
+  }
+  ++depth_;
+  lua_pushnil(lua_);
+  while (lua_next(lua_, -2) != 0) {
+    if (lua_type(lua_, -2) != LUA_TSTRING) {
+      return Fail(path, absl::StrCat("has a key that is a ",
+                                     lua_typename(lua_, lua_type(lua_, -2)),
+                                     "; keys must be names"));
+    }
+    size_t size = 0;
+    const char* const key = lua_tolstring(lua_, -2, &size);
+    if (size > kMaxSize) return Fail(path, "has too long a key");
+    const std::string name(key, size);
+    const std::string field = absl::StrCat(path, ".", name);
+    if (name.find('.') != std::string::npos) {
+      return Fail(field, "is no option: keys must be names without dots");
+    }
+    if (!Add(field)) return false;
+    lua_pop(lua_, 1);
+  }
+  --depth_;
+  return true;
+}
+
 }  // namespace
+
+std::string PrintableLine(const std::string_view text) {
+  std::string line(text.substr(0, kMaxLineLength));
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return text.size() > kMaxLineLength ? line + "..." : line;
+}
 
 absl::StatusOr<LuaDictionary> LoadLuaDictionary(
     const std::vector<std::string>& directories, const std::string& basename,
@@ -207,9 +295,8 @@ absl::StatusOr<LuaDictionary> LoadLuaDictionary(
   loader.directories = directories;
   loader.basename = basename;
   if (!loader.Find(basename)) return absl::NotFoundError(loader.error);
-  LuaDictionary dictionary{loader.path, name, {}};
-  const std::string prefix =
-      absl::StrCat("configuration file ", dictionary.path, ": ");
+  const std::string path = loader.path;
+  const std::string prefix = absl::StrCat("configuration file ", path, ": ");
 
   const std::unique_ptr<lua_State, decltype(&lua_close)> lua(
       lua_newstate(Allocate, &loader), &lua_close);
@@ -225,13 +312,11 @@ absl::StatusOr<LuaDictionary> LoadLuaDictionary(
     return absl::InvalidArgumentError(
         absl::StrCat(prefix, "must return a table, e.g. `return ", name, "`"));
   }
-  absl::StatusOr<LuaTable> table = PopLuaTable(lua.get(), name);
-  if (!table.ok()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(prefix, table.status().message()));
+  Converter converter(lua.get());
+  if (!converter.Add(name)) {
+    return absl::InvalidArgumentError(prefix + converter.error);
   }
-  dictionary.table = *std::move(table);
-  return dictionary;
+  return LuaDictionary{path, std::move(converter.values)};
 }
 
 }  // namespace cartographer_sdf

@@ -10,27 +10,37 @@
 #ifndef CARTOGRAPHER_SDF_CONFIG_LUA_DICTIONARY_H_
 #define CARTOGRAPHER_SDF_CONFIG_LUA_DICTIONARY_H_
 
+#include <map>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "cartographer_sdf/config/lua_value.h"
 
 namespace cartographer_sdf {
 
+// std::monostate is a table, whose fields have entries of their own.
+using LuaValue = std::variant<std::monostate, bool, double, std::string>;
+
 struct LuaDictionary {
-  // The path of the file and the name of its table, for error messages.
+  // The path of the file, for error messages.
   std::string path;
-  std::string name;
-  LuaTable table;
+  // By the keys that lead there, joined by dots: "TABLE.feature.radius_meters".
+  // Numbers are finite.
+  std::map<std::string, LuaValue> values;
 };
 
 // Looks for `basename` and for what it includes in the directories, in their
 // order. A file that is included again is skipped, so that circles end. `name`
-// is what the file calls the table that it returns.
+// is what the file calls the table that it returns. Tables are keyed by names
+// without dots, there are no lists.
 [[nodiscard]] absl::StatusOr<LuaDictionary> LoadLuaDictionary(
     const std::vector<std::string>& directories, const std::string& basename,
     const std::string& name);
+
+// The text with control characters as spaces, cut where it is long.
+[[nodiscard]] std::string PrintableLine(std::string_view text);
 
 }  // namespace cartographer_sdf
 

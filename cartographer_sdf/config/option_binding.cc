@@ -11,16 +11,16 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "cartographer_sdf/config/nearest_name.h"
+#include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
 const char* TypeName(const LuaValue& value) {
-  static constexpr const char* kNames[] = {"a boolean", "a number", "a string",
-                                           "a table"};
+  static constexpr const char* kNames[] = {"a table", "a boolean", "a number",
+                                           "a string"};
   return kNames[value.index()];
 }
 
@@ -33,171 +33,143 @@ std::string FormatNumber(const double number) {
   return std::string(text, end);
 }
 
-std::string Quote(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      absl::StrAppend(&quoted, "\\", std::string(1, c));
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      absl::StrAppendFormat(&quoted, "\\%03d", static_cast<int>(c));
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "\"";
-}
-
 }  // namespace
 
-std::string OptionReader::PathOf(const std::string& key) const {
-  return absl::StrCat(path_, ".", PrintableLine(key));
+std::string OptionReader::PathOf(const char* const key) const {
+  return absl::StrJoin(tables_, ".") + (tables_.empty() ? "" : ".") + key;
 }
 
-void OptionReader::AddError(const std::string& error) {
-  if (error_.empty()) error_ = error;
+void OptionReader::AddError(const std::string& path,
+                            const std::string& problem) {
+  if (error_.empty()) error_ = absl::StrCat(path, " ", problem);
 }
 
 // A misspelt key is also a missing one; it is the better one to name.
-std::string OptionReader::Error() const {
-  if (!table_.elements.empty()) {
-    return absl::StrCat(path_, " must have named keys, it is a list");
-  }
-  for (const LuaField& field : table_.fields) {
-    if (std::find(visited_.begin(), visited_.end(), field.key) !=
-        visited_.end()) {
+absl::Status OptionReader::Result() const {
+  std::string error = error_;
+  for (const auto& [path, value] : dictionary_.values) {
+    if (std::find(visited_.begin(), visited_.end(), path) != visited_.end()) {
       continue;
     }
-    const std::optional<std::string> nearest = NearestName(field.key, visited_);
-    return absl::StrCat(PathOf(field.key), " is not an option",
-                        nearest.has_value()
-                            ? absl::StrCat(", did you mean '", *nearest, "'?")
-                            : "");
+    const size_t table = path.rfind('.') + 1;
+    std::vector<std::string> keys;
+    for (const std::string& known : visited_) {
+      if (known.rfind('.') + 1 == table &&
+          known.compare(0, table, path, 0, table) == 0) {
+        keys.push_back(known.substr(table));
+      }
+    }
+    const std::optional<std::string> nearest =
+        NearestName(path.substr(table), keys);
+    error = absl::StrCat(
+        PrintableLine(path), " is not an option",
+        nearest ? absl::StrCat(", did you mean '", *nearest, "'?") : "");
+    break;
   }
-  return error_;
+  if (error.empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("configuration file ", dictionary_.path, ": ", error));
 }
 
 template <typename T>
 const T* OptionReader::Find(const char* const key,
                             const char* const type_name) {
-  visited_.push_back(key);
-  const LuaValue* const value = table_.Find(key);
-  if (value == nullptr) {
-    AddError(absl::StrCat(PathOf(key), " is missing"));
+  const std::string path = PathOf(key);
+  visited_.push_back(path);
+  const auto entry = dictionary_.values.find(path);
+  if (entry == dictionary_.values.end()) {
+    AddError(path, "is missing");
     return nullptr;
   }
-  const T* const found = std::get_if<T>(value);
+  const T* const found = std::get_if<T>(&entry->second);
   if (found == nullptr) {
-    AddError(absl::StrCat(PathOf(key), " must be ", type_name, ", it is ",
-                          TypeName(*value)));
+    AddError(path, absl::StrCat("must be ", type_name, ", it is ",
+                                TypeName(entry->second)));
   }
   return found;
 }
 
-const LuaTable* OptionReader::FindTable(const char* const key) {
-  return Find<LuaTable>(key, "a table");
-}
-
-void OptionReader::operator()(const char* const key, double& option) {
+void OptionReader::Visit(const char* const key, double& option) {
   const double* const value = Find<double>(key, "a number");
   if (value != nullptr) option = *value;
 }
 
-void OptionReader::operator()(const char* const key, int& option) {
+void OptionReader::Visit(const char* const key, int& option) {
   const double* const value = Find<double>(key, "an integer");
   if (value == nullptr) return;
   if (*value != std::floor(*value) ||
       *value < std::numeric_limits<int>::min() ||
       *value > std::numeric_limits<int>::max()) {
-    AddError(absl::StrCat(PathOf(key), " must be an integer, it is ",
-                          FormatNumber(*value)));
+    AddError(PathOf(key),
+             absl::StrCat("must be an integer, it is ", FormatNumber(*value)));
     return;
   }
   option = static_cast<int>(*value);
 }
 
-void OptionReader::operator()(const char* const key, bool& option) {
+void OptionReader::Visit(const char* const key, bool& option) {
   const bool* const value = Find<bool>(key, "true or false");
   if (value != nullptr) option = *value;
 }
 
-void OptionReader::operator()(const char* const key, std::string& option) {
+void OptionReader::VisitName(const char* const key,
+                             const std::vector<std::string>& names,
+                             int& index) {
   const std::string* const value = Find<std::string>(key, "a string");
-  if (value != nullptr) option = *value;
-}
-
-void OptionReader::operator()(const char* const key,
-                              std::vector<double>& option) {
-  const LuaTable* const value = Find<LuaTable>(key, "a list of numbers");
   if (value == nullptr) return;
-  if (!value->fields.empty()) {
-    AddError(absl::StrCat(PathOf(key), " must be a list of numbers"));
+  const auto it = std::find(names.begin(), names.end(), *value);
+  if (it == names.end()) {
+    AddError(PathOf(key),
+             absl::StrCat("must be one of '", absl::StrJoin(names, "', '"),
+                          "', it is '", PrintableLine(*value), "'"));
     return;
   }
-  option.clear();
-  for (const LuaValue& element : value->elements) {
-    const double* const number = std::get_if<double>(&element);
-    if (number == nullptr) {
-      AddError(absl::StrCat(PathOf(key), "[", option.size() + 1,
-                            "] must be a number, it is ", TypeName(element)));
-      return;
-    }
-    option.push_back(*number);
-  }
+  index = static_cast<int>(it - names.begin());
 }
 
-size_t OptionReader::FindName(const char* const key,
-                              const std::vector<std::string>& names) {
-  CHECK(!names.empty());
-  const std::string* const value = Find<std::string>(key, "a string");
-  if (value == nullptr) return 0;
-  const auto it = std::find(names.begin(), names.end(), *value);
-  if (it != names.end()) return static_cast<size_t>(it - names.begin());
-  AddError(absl::StrCat(PathOf(key), " must be one of '",
-                        absl::StrJoin(names, "', '"), "', it is '",
-                        PrintableLine(*value), "'"));
-  return 0;
+bool OptionReader::Enter(const char* const key) {
+  if (Find<std::monostate>(key, "a table") == nullptr) return false;
+  tables_.push_back(key);
+  return true;
 }
 
-void OptionWriter::Write(const char* const key, const std::string& value) {
+void OptionReader::Leave(const std::string& problem) {
+  if (!problem.empty() && error_.empty()) error_ = PathOf(problem.c_str());
+  tables_.pop_back();
+}
+
+void OptionWriter::WriteLine(const std::string& line) {
   absl::StrAppend(&text_, std::string(static_cast<size_t>(2 * depth_), ' '),
-                  key, " = ", value, depth_ > 0 ? ",\n" : "\n");
+                  line, "\n");
 }
 
-void OptionWriter::Open(const char* const key) {
-  absl::StrAppend(&text_, std::string(static_cast<size_t>(2 * depth_), ' '),
-                  key, " = {\n");
+void OptionWriter::Visit(const char* const key, double& option) {
+  WriteLine(absl::StrCat(key, " = ", FormatNumber(option), ","));
+}
+
+void OptionWriter::Visit(const char* const key, int& option) {
+  WriteLine(absl::StrCat(key, " = ", option, ","));
+}
+
+void OptionWriter::Visit(const char* const key, bool& option) {
+  WriteLine(absl::StrCat(key, " = ", option ? "true" : "false", ","));
+}
+
+void OptionWriter::VisitName(const char* const key,
+                             const std::vector<std::string>& names,
+                             int& index) {
+  WriteLine(absl::StrCat(key, " = \"", names.at(index), "\","));
+}
+
+bool OptionWriter::Enter(const char* const key) {
+  WriteLine(absl::StrCat(key, " = {"));
   ++depth_;
+  return true;
 }
 
-void OptionWriter::Close() {
+void OptionWriter::Leave(const std::string&) {
   --depth_;
-  absl::StrAppend(&text_, std::string(static_cast<size_t>(2 * depth_), ' '),
-                  depth_ > 0 ? "},\n" : "}\n");
-}
-
-void OptionWriter::operator()(const char* const key, double& option) {
-  Write(key, FormatNumber(option));
-}
-
-void OptionWriter::operator()(const char* const key, int& option) {
-  Write(key, absl::StrCat(option));
-}
-
-void OptionWriter::operator()(const char* const key, bool& option) {
-  Write(key, option ? "true" : "false");
-}
-
-void OptionWriter::operator()(const char* const key, std::string& option) {
-  Write(key, Quote(option));
-}
-
-void OptionWriter::operator()(const char* const key,
-                              std::vector<double>& option) {
-  std::string list = "{";
-  for (const double number : option) {
-    absl::StrAppend(&list, list.size() > 1 ? ", " : "", FormatNumber(number));
-  }
-  Write(key, list + "}");
+  WriteLine(depth_ > 0 ? "}," : "}");
 }
 
 }  // namespace cartographer_sdf

@@ -4,15 +4,14 @@
 // Binds the fields of a struct to the keys of a Lua table in one place, for
 // reading and for writing. Beside the struct, in its namespace:
 //
-//   template <typename Visitor>
-//   void VisitOptions(Visitor& visit, FooOptions& options) {
+//   inline void VisitOptions(OptionVisitor& visit, FooOptions& options) {
 //     visit("radius_meters", options.radius_meters);
 //     visit("bar", options.bar);  // another such struct: a nested table
 //   }
 //   // A sentence that begins with the offending key, or nothing.
 //   std::string Validate(const FooOptions& options);
 //
-// and for an enum: std::vector<std::pair<std::string, Enum>> OptionNames(Enum).
+// and for an enum: std::vector<std::string> OptionNames(Enum), in its order.
 // The table must have exactly the bound keys, with values of the right type.
 
 #ifndef CARTOGRAPHER_SDF_CONFIG_OPTION_BINDING_H_
@@ -20,123 +19,120 @@
 
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/config/lua_dictionary.h"
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 
-class OptionReader {
+// Visits the options of a struct, and of those within, in their order.
+class OptionVisitor {
  public:
-  // `path` is that of the table, for errors: "TABLE.key.key".
-  OptionReader(const LuaTable& table, const std::string& path)
-      : table_(table), path_(path) {}
+  virtual ~OptionVisitor() = default;
 
-  void operator()(const char* key, double& option);
-  void operator()(const char* key, int& option);
-  void operator()(const char* key, bool& option);
-  void operator()(const char* key, std::string& option);
-  void operator()(const char* key, std::vector<double>& option);
+  void operator()(const char* key, double& option) { Visit(key, option); }
+  void operator()(const char* key, int& option) { Visit(key, option); }
+  void operator()(const char* key, bool& option) { Visit(key, option); }
   template <typename T>
-  void operator()(const char* key, T& option);
-
-  // The first thing wrong so far; where everything was visited, this includes
-  // keys that are not bound.
-  [[nodiscard]] std::string Error() const;
-  void AddError(const std::string& error);
+  void operator()(const char* const key, T& option) {
+    if constexpr (std::is_enum_v<T>) {
+      int index = static_cast<int>(option);
+      VisitName(key, OptionNames(option), index);
+      option = static_cast<T>(index);
+    } else if (Enter(key)) {
+      VisitOptions(*this, option);
+      Leave(Validate(option));
+    }
+  }
 
  private:
+  virtual void Visit(const char* key, double& option) = 0;
+  virtual void Visit(const char* key, int& option) = 0;
+  virtual void Visit(const char* key, bool& option) = 0;
+  // `index` is that of one of the names.
+  virtual void VisitName(const char* key, const std::vector<std::string>& names,
+                         int& index) = 0;
+  // Before and after a nested struct, which is passed over if Enter says so;
+  // `problem` is what its Validate says.
+  virtual bool Enter(const char* key) = 0;
+  virtual void Leave(const std::string& problem) = 0;
+};
+
+class OptionReader : public OptionVisitor {
+ public:
+  explicit OptionReader(const LuaDictionary& dictionary)
+      : dictionary_(dictionary) {}
+
+  // What is wrong with the file, or OK.
+  [[nodiscard]] absl::Status Result() const;
+
+ private:
+  void Visit(const char* key, double& option) override;
+  void Visit(const char* key, int& option) override;
+  void Visit(const char* key, bool& option) override;
+  void VisitName(const char* key, const std::vector<std::string>& names,
+                 int& index) override;
+  bool Enter(const char* key) override;
+  void Leave(const std::string& problem) override;
   // Null, with an error, where it is missing or of another type.
   template <typename T>
   const T* Find(const char* key, const char* type_name);
-  const LuaTable* FindTable(const char* key);
-  [[nodiscard]] std::string PathOf(const std::string& key) const;
-  // Index of the value among `names`, 0 with an error where it is none of them.
-  size_t FindName(const char* key, const std::vector<std::string>& names);
+  [[nodiscard]] std::string PathOf(const char* key) const;
+  void AddError(const std::string& path, const std::string& problem);
 
-  const LuaTable& table_;
-  const std::string path_;
+  const LuaDictionary& dictionary_;
+  // The keys of the tables around what is visited.
+  std::vector<std::string> tables_;
   std::vector<std::string> visited_;
   std::string error_;
 };
 
-// What is wrong with the table, or nothing.
-template <typename T>
-[[nodiscard]] std::string ReadTable(const LuaTable& table,
-                                    const std::string& path, T& options) {
-  OptionReader reader(table, path);
-  VisitOptions(reader, options);
-  if (std::string error = reader.Error(); !error.empty()) return error;
-  const std::string error = Validate(options);
-  return error.empty() ? error : path + "." + error;
-}
-
-template <typename T>
-void OptionReader::operator()(const char* const key, T& option) {
-  if constexpr (std::is_enum_v<T>) {
-    std::vector<std::string> names;
-    const std::vector<std::pair<std::string, T>> options = OptionNames(T());
-    for (const auto& [name, unused] : options) names.push_back(name);
-    option = options[FindName(key, names)].second;
-  } else {
-    const LuaTable* const table = FindTable(key);
-    if (table != nullptr) AddError(ReadTable(*table, PathOf(key), option));
-  }
-}
-
-template <typename T>
-[[nodiscard]] absl::StatusOr<T> ReadOptions(const LuaDictionary& dictionary) {
-  T options;
-  const std::string error =
-      ReadTable(dictionary.table, dictionary.name, options);
-  if (error.empty()) return options;
-  return absl::InvalidArgumentError("configuration file " + dictionary.path +
-                                    ": " + error);
-}
-
-class OptionWriter {
+class OptionWriter : public OptionVisitor {
  public:
-  void operator()(const char* key, double& option);
-  void operator()(const char* key, int& option);
-  void operator()(const char* key, bool& option);
-  void operator()(const char* key, std::string& option);
-  void operator()(const char* key, std::vector<double>& option);
-  template <typename T>
-  void operator()(const char* key, T& option) {
-    if constexpr (std::is_enum_v<T>) {
-      std::string name;
-      for (const auto& entry : OptionNames(option)) {
-        if (entry.second == option) name = entry.first;
-      }
-      CHECK(!name.empty()) << key << " has no name";
-      (*this)(key, name);
-    } else {
-      Open(key);
-      VisitOptions(*this, option);
-      Close();
-    }
-  }
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  void Open(const char* key);
-  void Close();
-  void Write(const char* key, const std::string& value);
+  void Visit(const char* key, double& option) override;
+  void Visit(const char* key, int& option) override;
+  void Visit(const char* key, bool& option) override;
+  void VisitName(const char* key, const std::vector<std::string>& names,
+                 int& index) override;
+  bool Enter(const char* key) override;
+  void Leave(const std::string& problem) override;
+  void WriteLine(const std::string& line);
 
   int depth_ = 0;
   std::string text_;
 };
 
-// Lua that assigns the options to `name`; reading it gives the same options.
+// The options in the table `name` of a file, see LoadLuaDictionary; those that
+// are not visited are as given.
 template <typename T>
-[[nodiscard]] std::string FormatOptions(const std::string& name, T options) {
+[[nodiscard]] absl::StatusOr<T> LoadTable(
+    const std::vector<std::string>& directories, const std::string& basename,
+    const char* const name, T options = T()) {
+  const absl::StatusOr<LuaDictionary> dictionary =
+      LoadLuaDictionary(directories, basename, name);
+  if (!dictionary.ok()) return dictionary.status();
+  OptionReader reader(*dictionary);
+  reader(name, options);
+  if (absl::Status status = reader.Result(); !status.ok()) return status;
+  return options;
+}
+
+// Lua that assigns the options to `name`.
+template <typename T>
+[[nodiscard]] std::string FormatTable(const char* const name, T options) {
   OptionWriter writer;
-  writer(name.c_str(), options);
+  writer(name, options);
   return writer.text();
+}
+
+// As a file that LoadTable reads.
+template <typename T>
+[[nodiscard]] std::string FormatFile(const char* const name, const T& options) {
+  return FormatTable(name, options) + "\nreturn " + name + "\n";
 }
 
 }  // namespace cartographer_sdf

@@ -8,21 +8,19 @@
 #define CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "cartographer_sdf/config/option_binding.h"
 #include "cartographer_sdf/config/options.h"
 
 namespace cartographer_sdf {
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, FieldOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, FieldOptions& options) {
   visit("occupied_probability", options.occupied_probability);
   visit("padding_meters", options.padding_meters);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, KeypointOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, KeypointOptions& options) {
   visit("smoothing_sigma_cells", options.smoothing_sigma_cells);
   visit("detection_threshold", options.detection_threshold);
   visit("non_maximum_suppression_cells", options.non_maximum_suppression_cells);
@@ -30,8 +28,7 @@ void VisitOptions(Visitor& visit, KeypointOptions& options) {
   visit("max_clearance_meters", options.max_clearance_meters);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, DescriptorOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, DescriptorOptions& options) {
   visit("radius_meters", options.radius_meters);
   visit("num_bins", options.num_bins);
   visit("num_orientation_bins", options.num_orientation_bins);
@@ -40,15 +37,13 @@ void VisitOptions(Visitor& visit, DescriptorOptions& options) {
   visit("secondary_orientation_ratio", options.secondary_orientation_ratio);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, PlaceOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, PlaceOptions& options) {
   visit("field", options.field);
   visit("keypoint", options.keypoint);
   visit("descriptor", options.descriptor);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, CorrespondenceOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, CorrespondenceOptions& options) {
   visit("num_neighbours", options.num_neighbours);
   visit("use_ratio_test", options.use_ratio_test);
   visit("max_ratio", options.max_ratio);
@@ -57,8 +52,7 @@ void VisitOptions(Visitor& visit, CorrespondenceOptions& options) {
         options.max_clearance_difference_meters);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, PoseVotingOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, PoseVotingOptions& options) {
   visit("max_num_correspondences", options.max_num_correspondences);
   visit("max_length_difference_meters", options.max_length_difference_meters);
   visit("max_orientation_difference", options.max_orientation_difference);
@@ -67,21 +61,18 @@ void VisitOptions(Visitor& visit, PoseVotingOptions& options) {
   visit("bin_rotation", options.bin_rotation);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, HypothesisOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, HypothesisOptions& options) {
   visit("max_num_hypotheses", options.max_num_hypotheses);
   visit("votes", options.votes);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, RansacOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, RansacOptions& options) {
   visit("max_num_iterations", options.max_num_iterations);
   visit("inlier_distance_meters", options.inlier_distance_meters);
   visit("min_baseline_meters", options.min_baseline_meters);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, RankingOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, RankingOptions& options) {
   visit("num_coarse_points", options.num_coarse_points);
   visit("num_fine_points", options.num_fine_points);
   visit("num_coarse_survivors", options.num_coarse_survivors);
@@ -94,24 +85,21 @@ void VisitOptions(Visitor& visit, RankingOptions& options) {
   visit("max_fine_score_gap", options.max_fine_score_gap);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, RegistrationOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, RegistrationOptions& options) {
   visit("num_iterations", options.num_iterations);
   visit("initial_kernel_scale_meters", options.initial_kernel_scale_meters);
   visit("final_kernel_scale_meters", options.final_kernel_scale_meters);
   visit("max_num_points", options.max_num_points);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, AgreementOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, AgreementOptions& options) {
   visit("hit_distance_meters", options.hit_distance_meters);
   visit("contradiction_distance_meters", options.contradiction_distance_meters);
   visit("weigh_by_certainty", options.weigh_by_certainty);
   visit("max_num_points", options.max_num_points);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ScoreWeights& options) {
+inline void VisitOptions(OptionVisitor& visit, ScoreWeights& options) {
   visit("contradiction_ratio", options.contradiction_ratio);
   visit("log_overlap", options.log_overlap);
   visit("wall_evidence", options.wall_evidence);
@@ -120,8 +108,7 @@ void VisitOptions(Visitor& visit, ScoreWeights& options) {
   visit("bias", options.bias);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, JudgementOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, JudgementOptions& options) {
   visit("score_weights", options.score_weights);
   visit("min_overlap_area", options.min_overlap_area);
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
@@ -130,21 +117,18 @@ void VisitOptions(Visitor& visit, JudgementOptions& options) {
   visit("min_margin", options.min_margin);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, VerificationOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, VerificationOptions& options) {
   visit("ranking", options.ranking);
   visit("registration", options.registration);
   visit("agreement", options.agreement);
   visit("judgement", options.judgement);
 }
 
-[[nodiscard]] inline std::vector<std::pair<std::string, Method>> OptionNames(
-    Method) {
-  return {{"sdf", Method::kSdf}, {"paper", Method::kPaper}};
+[[nodiscard]] inline std::vector<std::string> OptionNames(Method) {
+  return {"sdf", "paper"};
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, MatchOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, MatchOptions& options) {
   visit("method", options.method);
   visit("correspondence", options.correspondence);
   visit("hypotheses", options.hypotheses);
@@ -155,8 +139,7 @@ void VisitOptions(Visitor& visit, MatchOptions& options) {
   visit("seed", options.seed);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, TearOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, TearOptions& options) {
   visit("num_parts", options.num_parts);
   visit("resolution_meters", options.resolution_meters);
   visit("max_range_meters", options.max_range_meters);
@@ -167,8 +150,7 @@ void VisitOptions(Visitor& visit, TearOptions& options) {
   visit("min_rotation", options.min_rotation);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, RetrievalOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, RetrievalOptions& options) {
   visit("num_neighbours", options.num_neighbours);
   visit("max_clearance_difference_meters",
         options.max_clearance_difference_meters);
@@ -178,8 +160,7 @@ void VisitOptions(Visitor& visit, RetrievalOptions& options) {
   visit("max_num_candidates", options.max_num_candidates);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, ConsistencyOptions& options) {
   visit("rotation_sigma_per_sqrt_meter", options.rotation_sigma_per_sqrt_meter);
   visit("translation_sigma_per_meter", options.translation_sigma_per_meter);
   visit("closure_translation_sigma_meters",
@@ -191,8 +172,7 @@ void VisitOptions(Visitor& visit, ConsistencyOptions& options) {
   visit("min_support", options.min_support);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ConstraintOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, ConstraintOptions& options) {
   visit("num_nodes_per_submap", options.num_nodes_per_submap);
   visit("min_num_constraints", options.min_num_constraints);
   visit("translation_weight", options.translation_weight);
@@ -203,8 +183,7 @@ void VisitOptions(Visitor& visit, ConstraintOptions& options) {
   visit("min_hit_ratio", options.min_hit_ratio);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, OptimizationOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, OptimizationOptions& options) {
   visit("huber_scale", options.huber_scale);
   visit("local_slam_pose_translation_weight",
         options.local_slam_pose_translation_weight);
@@ -215,22 +194,20 @@ void VisitOptions(Visitor& visit, OptimizationOptions& options) {
   visit("max_num_iterations", options.max_num_iterations);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, OutlierRejectionOptions& options) {
+inline void VisitOptions(OptionVisitor& visit,
+                         OutlierRejectionOptions& options) {
   visit("max_translation_error_meters", options.max_translation_error_meters);
   visit("max_rotation_error", options.max_rotation_error);
   visit("max_num_rounds", options.max_num_rounds);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, NeighbourhoodWeights& weights) {
+inline void VisitOptions(OptionVisitor& visit, NeighbourhoodWeights& weights) {
   visit("pair_score", weights.pair_score);
   visit("log_contradiction", weights.log_contradiction);
   visit("bias", weights.bias);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("num_steps", options.num_steps);
   visit("index_step", options.index_step);
   visit("min_overlap_area", options.min_overlap_area);
@@ -243,8 +220,7 @@ void VisitOptions(Visitor& visit, NeighbourhoodOptions& options) {
   visit("max_gain", options.max_gain);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, RecognitionOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, RecognitionOptions& options) {
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
   visit("use_retrieval", options.use_retrieval);
@@ -253,8 +229,7 @@ void VisitOptions(Visitor& visit, RecognitionOptions& options) {
   visit("neighbourhood", options.neighbourhood);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ClosingOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, ClosingOptions& options) {
   visit("detect_torn_submaps", options.detect_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);
@@ -264,21 +239,18 @@ void VisitOptions(Visitor& visit, ClosingOptions& options) {
   visit("outlier_rejection", options.outlier_rejection);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, LoopClosingOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, LoopClosingOptions& options) {
   visit("place", options.place);
   visit("recognition", options.recognition);
   visit("closing", options.closing);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, GroupingOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, GroupingOptions& options) {
   visit("max_distance_meters", options.max_distance_meters);
   visit("max_rotation", options.max_rotation);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, AuditOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, AuditOptions& options) {
   visit("grouping", options.grouping);
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("min_margin", options.min_margin);
@@ -289,8 +261,7 @@ void VisitOptions(Visitor& visit, AuditOptions& options) {
   visit("outlier_rejection", options.outlier_rejection);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, PlacementOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, PlacementOptions& options) {
   visit("independent_distance_meters", options.independent_distance_meters);
   visit("max_place_score", options.max_place_score);
   visit("min_score", options.min_score);
@@ -301,36 +272,31 @@ void VisitOptions(Visitor& visit, PlacementOptions& options) {
   visit("min_observed_area", options.min_observed_area);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ScanPlaceOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, ScanPlaceOptions& options) {
   visit("num_scans", options.num_scans);
   visit("resolution_meters", options.resolution_meters);
   visit("hit_probability", options.hit_probability);
   visit("miss_probability", options.miss_probability);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, LocalizationOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, LocalizationOptions& options) {
   visit("placement", options.placement);
   visit("num_first_places", options.num_first_places);
   visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, FoldCheckOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, FoldCheckOptions& options) {
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, ReportOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, ReportOptions& options) {
   visit("map_picture_pixels", options.map_picture_pixels);
   visit("closure_picture_pixels", options.closure_picture_pixels);
   visit("max_closure_pictures", options.max_closure_pictures);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, Options& options) {
+inline void VisitOptions(OptionVisitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
   visit("localization", options.localization);
   visit("scan_places", options.scan_places);

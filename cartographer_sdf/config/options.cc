@@ -3,28 +3,24 @@
 
 #include "cartographer_sdf/config/options.h"
 
-#include "cartographer_sdf/config/option_binding.h"
 #include "cartographer_sdf/config/option_keys.h"
 
 namespace cartographer_sdf {
+
 std::string Validate(const Options&) { return ""; }
 
 absl::StatusOr<Options> LoadOptions(const std::vector<std::string>& directories,
                                     const std::string& basename) {
-  const absl::StatusOr<LuaDictionary> dictionary =
-      LoadLuaDictionary(directories, basename, kOptionsTable);
-  if (!dictionary.ok()) return dictionary.status();
-  return ReadOptions<Options>(*dictionary);
+  return LoadTable<Options>(directories, basename, kOptionsTable);
 }
 
 std::string FormatPlaceOptions(const PlaceOptions& place,
                                const MatchOptions& match) {
-  return FormatOptions("place", place) + FormatOptions("match", match);
+  return FormatTable("place", place) + FormatTable("match", match);
 }
 
 std::string FormatOptions(const Options& options) {
-  return FormatOptions(kOptionsTable, options) + "\nreturn " + kOptionsTable +
-         "\n";
+  return FormatFile(kOptionsTable, options);
 }
 
 }  // namespace cartographer_sdf

@@ -8,7 +8,6 @@
 #define CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"

@@ -6,15 +6,15 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "cartographer_sdf/closing/constraint_generation.h"
 #include "cartographer_sdf/closing/pipeline.h"
 #include "cartographer_sdf/geometry/distinct_poses.h"
-#include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
@@ -44,54 +44,55 @@ constexpr size_t kMinRowPairs = 3;
 constexpr size_t kMaxRowPairs = 6;
 constexpr int kNumAttempts = 10;
 
-ConstraintOptions ForgingOptions(const LoopClosingOptions& loop_closing,
-                                 const FalsificationOptions& options) {
-  ConstraintOptions constraint_options = loop_closing.closing.constraints;
-  constraint_options.num_nodes_per_submap = options.num_nodes_per_submap;
-  constraint_options.min_num_constraints = 1;
-  constraint_options.min_hit_ratio = options.min_hit_ratio;
-  return constraint_options;
-}
+constexpr const char* kKindNames[] = {"corridor", "door", "half_turn",
+                                      "twin",     "row",  "random"};
 
-// The scans that constraints may need.
-ScansByNode ScansToRegister(const ConstraintOptions& options,
-                            const DescribedMap& map) {
-  ScansByNode scans;
-  for (const auto& [submap, nodes] : FindInsertedNodes(map.state.pose_graph)) {
-    if (map.places.count(submap) == 0) continue;
-    for (const auto& [node, T_submap_node] : ChooseNodes(options, nodes)) {
-      const auto cloud = map.point_clouds.find(node);
-      if (cloud != map.point_clouds.end()) {
-        scans.emplace(node, ToScan(cloud->second));
-      }
-    }
+// Nodes of each submap of a pair that get a constraint to the other.
+constexpr int kNumNodesPerSubmap = 2;
+// Where the scan is not on walls to this extent there is none, as there is a
+// least score in Cartographer. Has no effect on random poses.
+constexpr double kMinHitRatio = 0.55;
+
+// Weights are those of the map's own inter-submap constraints.
+ConstraintOptions ForgingOptions(const ConstraintOptions& closing,
+                                 const PoseGraph& pose_graph) {
+  ConstraintOptions constraint_options = closing;
+  constraint_options.num_nodes_per_submap = kNumNodesPerSubmap;
+  constraint_options.min_num_constraints = 1;
+  constraint_options.min_hit_ratio = kMinHitRatio;
+  for (const Constraint& constraint : pose_graph.constraints) {
+    if (constraint.tag != Constraint::Tag::kInterSubmap) continue;
+    constraint_options.translation_weight = constraint.translation_weight;
+    constraint_options.rotation_weight = constraint.rotation_weight;
+    break;
   }
-  return scans;
+  return constraint_options;
 }
 
 // Makes wrong poses of pairs of a map's submaps, and constraints of them.
 class Forger {
  public:
-  Forger(const LoopClosingOptions& loop_closing,
-         const FalsificationOptions& options, const DescribedMap& map,
-         const ScansByNode& scans)
-      : loop_closing_(loop_closing),
-        options_(options),
+  Forger(const LoopClosingOptions& loop_closing, const uint32_t seed,
+         const DescribedMap& map)
+      : recognition_(loop_closing.recognition),
+        constraint_options_(ForgingOptions(loop_closing.closing.constraints,
+                                           map.state.pose_graph)),
         map_(map),
-        scans_(scans),
         nodes_(FindInsertedNodes(map.state.pose_graph)),
-        random_(options.seed) {
+        random_(seed) {
+    for (const auto& [node, cloud] : map.point_clouds) {
+      scans_.emplace(node, ToScan(cloud));
+    }
     for (auto i = map.places.begin(); i != map.places.end(); ++i) {
       for (auto j = std::next(i); j != map.places.end(); ++j) {
-        if (i->first.trajectory == j->first.trajectory &&
-            j->first.index - i->first.index <
-                loop_closing.recognition.min_index_gap) {
+        const IdPair ids{i->first, j->first};
+        if (ShareScans(ids.first, ids.second, recognition_.min_index_gap)) {
           continue;
         }
-        const double overlap = OverlapArea(i->second.surface, j->second.surface,
-                                           PoseByMap(i->first, j->first));
-        if (overlap >= kMinOverlapArea) near_.emplace_back(i->first, j->first);
-        if (overlap == 0.) far_.emplace_back(i->first, j->first);
+        const double overlap =
+            OverlapArea(i->second.surface, j->second.surface, PoseByMap(ids));
+        if (overlap >= kMinOverlapArea) near_.push_back(ids);
+        if (overlap == 0.) far_.push_back(ids);
       }
     }
     Shuffle(&near_);
@@ -103,9 +104,9 @@ class Forger {
   void MatchAliases(const Executor& executor) {
     std::vector<std::optional<Match>> matches(far_.size());
     executor(far_.size(), [&](const size_t k) {
-      matches[k] = MatchPlaces(loop_closing_.recognition.match,
-                               map_.places.at(far_[k].first),
-                               map_.places.at(far_[k].second));
+      matches[k] =
+          MatchPlaces(recognition_.match, map_.places.at(far_[k].first),
+                      map_.places.at(far_[k].second));
     });
     for (const std::optional<Match>& match : matches) {
       if (match) aliases_.push_back(match->pair);
@@ -119,18 +120,15 @@ class Forger {
   // map has no more.
   std::vector<Constraint> Forge(const FalseKind kind) {
     switch (kind) {
-      case FalseKind::kCorridor:
-      case FalseKind::kDoor:
-      case FalseKind::kHalfTurn:
-        return ForgeNear(kind);
       case FalseKind::kTwin:
         return ForgeTwin();
       case FalseKind::kRow:
         return ForgeRow();
       case FalseKind::kRandom:
         return ForgeRandom();
+      default:
+        return ForgeNear(kind);
     }
-    LOG(FATAL) << "not a kind: " << static_cast<int>(kind);
   }
 
  private:
@@ -143,38 +141,35 @@ class Forger {
     }
   }
 
-  [[nodiscard]] Rigid2 PoseByMap(const SubmapId& reference,
-                                 const SubmapId& query) const {
+  [[nodiscard]] Rigid2 PoseByMap(const IdPair& ids) const {
     const auto& poses = map_.state.pose_graph.submap_poses;
-    return poses.at(reference).Inverse() * poses.at(query);
+    return poses.at(ids.first).Inverse() * poses.at(ids.second);
   }
 
   [[nodiscard]] const RegistrationOptions& Registration() const {
-    return loop_closing_.recognition.match.verification.registration;
+    return recognition_.match.verification.registration;
   }
 
   [[nodiscard]] const SurfaceModel& Surface(const SubmapId& id) const {
     return map_.places.at(id).surface;
   }
 
+  [[nodiscard]] std::optional<Rigid2> Register(const IdPair& ids,
+                                               const Rigid2& guess) const {
+    return RegisterSubmaps(Registration(), Surface(ids.first),
+                           Surface(ids.second), guess);
+  }
+
   [[nodiscard]] std::vector<Constraint> MakeConstraints(
-      const PairPose& pair, const bool with_scans) const {
-    ConstraintOptions constraint_options =
-        ForgingOptions(loop_closing_, options_);
-    for (const Constraint& constraint : map_.state.pose_graph.constraints) {
-      if (constraint.tag != Constraint::Tag::kInterSubmap) continue;
-      constraint_options.translation_weight = constraint.translation_weight;
-      constraint_options.rotation_weight = constraint.rotation_weight;
-      break;
-    }
-    return GenerateConstraints(constraint_options, pair, nodes_,
+      const PairPose& pair, const ScansByNode& scans) const {
+    return GenerateConstraints(constraint_options_, pair, nodes_,
                                Surface(pair.reference), Surface(pair.query),
-                               with_scans ? scans_ : ScansByNode());
+                               scans);
   }
 
   [[nodiscard]] bool IsWrong(const IdPair& ids, const Rigid2& pose) const {
-    return !AreNear(pose, PoseByMap(ids.first, ids.second),
-                    ObservedCentroid(Surface(ids.second)), kMinError);
+    return !AreNear(pose, PoseByMap(ids), ObservedCentroid(Surface(ids.second)),
+                    kMinError);
   }
 
   [[nodiscard]] double Alikeness(const IdPair& ids, const Rigid2& pose) const {
@@ -198,8 +193,7 @@ class Forger {
     std::optional<Rigid2> best;
     double best_alikeness = 0.;
     for (const Rigid2& guess : guesses) {
-      const std::optional<Rigid2> pose = RegisterSubmaps(
-          Registration(), Surface(ids.first), Surface(ids.second), guess);
+      const std::optional<Rigid2> pose = Register(ids, guess);
       if (!pose || !IsWrong(ids, *pose)) continue;
       const double alikeness = Alikeness(ids, *pose);
       if (!best || alikeness > best_alikeness) {
@@ -213,9 +207,7 @@ class Forger {
   // In the frame of the first; none where the pair can't be registered.
   [[nodiscard]] std::optional<Eigen::Vector2d> DirectionOfWalls(
       const IdPair& ids) const {
-    const std::optional<Rigid2> pose =
-        RegisterSubmaps(Registration(), Surface(ids.first), Surface(ids.second),
-                        PoseByMap(ids.first, ids.second));
+    const std::optional<Rigid2> pose = Register(ids, PoseByMap(ids));
     if (!pose) return std::nullopt;
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
                NormalScatter(Registration(), Surface(ids.first),
@@ -226,7 +218,7 @@ class Forger {
 
   [[nodiscard]] std::vector<Rigid2> Guesses(const FalseKind kind,
                                             const IdPair& ids) {
-    const Rigid2 T_reference_query = PoseByMap(ids.first, ids.second);
+    const Rigid2 T_reference_query = PoseByMap(ids);
     std::vector<Rigid2> guesses;
     if (kind == FalseKind::kHalfTurn) {
       const Eigen::Vector2d middle =
@@ -265,7 +257,7 @@ class Forger {
         const std::optional<Rigid2> pose = BestWrong(ids, Guesses(kind, ids));
         if (!pose) continue;
         std::vector<Constraint> constraints =
-            MakeConstraints({ids.first, ids.second, *pose}, true);
+            MakeConstraints({ids.first, ids.second, *pose}, scans_);
         if (!constraints.empty()) return constraints;
         // Other kinds would guess the same again.
         if (kind != FalseKind::kCorridor) break;
@@ -277,7 +269,7 @@ class Forger {
   std::vector<Constraint> ForgeTwin() {
     while (next_alias_ < aliases_.size()) {
       std::vector<Constraint> constraints =
-          MakeConstraints(aliases_[next_alias_++], true);
+          MakeConstraints(aliases_[next_alias_++], scans_);
       if (!constraints.empty()) return constraints;
     }
     return {};
@@ -287,7 +279,7 @@ class Forger {
   std::vector<Constraint> ForgeRow() {
     while (next_alias_ < aliases_.size()) {
       const PairPose& first = aliases_[next_alias_++];
-      std::vector<Constraint> row = MakeConstraints(first, true);
+      std::vector<Constraint> row = MakeConstraints(first, scans_);
       if (row.empty()) continue;
       size_t num_pairs = 1;
       for (int i = -kRowReach; i <= kRowReach; ++i) {
@@ -296,7 +288,7 @@ class Forger {
           const std::optional<PairPose> pair = Neighbours(first, i, j);
           if (!pair) continue;
           const std::vector<Constraint> constraints =
-              MakeConstraints(*pair, true);
+              MakeConstraints(*pair, scans_);
           row.insert(row.end(), constraints.begin(), constraints.end());
           if (!constraints.empty()) ++num_pairs;
         }
@@ -344,21 +336,19 @@ class Forger {
       const Rigid2 pose = Rigid2(middle, random_.Uniform(-M_PI, M_PI)) *
                           Rigid2(-ObservedCentroid(query->second.surface), 0.);
       const IdPair ids{reference->first, query->first};
-      if ((ids.first.trajectory == ids.second.trajectory &&
-           ids.second.index - ids.first.index <
-               loop_closing_.recognition.min_index_gap) ||
+      if (ShareScans(ids.first, ids.second, recognition_.min_index_gap) ||
           !IsWrong(ids, pose)) {
         continue;
       }
-      return MakeConstraints({ids.first, ids.second, pose}, false);
+      return MakeConstraints({ids.first, ids.second, pose}, {});
     }
     return {};
   }
 
-  const LoopClosingOptions& loop_closing_;
-  const FalsificationOptions& options_;
+  const RecognitionOptions& recognition_;
+  const ConstraintOptions constraint_options_;
   const DescribedMap& map_;
-  const ScansByNode& scans_;
+  ScansByNode scans_;
   const std::map<SubmapId, InsertedNodes> nodes_;
   RandomNumbers random_;
   // Pairs that see one place by the map, and that do not.
@@ -371,36 +361,19 @@ class Forger {
 }  // namespace
 
 const char* FalseKindName(const FalseKind kind) {
-  switch (kind) {
-    case FalseKind::kCorridor:
-      return "corridor";
-    case FalseKind::kDoor:
-      return "door";
-    case FalseKind::kHalfTurn:
-      return "half_turn";
-    case FalseKind::kTwin:
-      return "twin";
-    case FalseKind::kRow:
-      return "row";
-    case FalseKind::kRandom:
-      return "random";
-  }
-  LOG(FATAL) << "not a kind: " << static_cast<int>(kind);
+  return kKindNames[static_cast<int>(kind)];
 }
 
 std::vector<FalseKind> AllFalseKinds() {
-  return {FalseKind::kCorridor, FalseKind::kDoor, FalseKind::kHalfTurn,
-          FalseKind::kTwin,     FalseKind::kRow,  FalseKind::kRandom};
+  std::vector<FalseKind> kinds;
+  for (size_t k = 0; k < std::size(kKindNames); ++k) {
+    kinds.push_back(static_cast<FalseKind>(k));
+  }
+  return kinds;
 }
 
 std::string Validate(const FalsificationOptions& options) {
-  if (options.num_pairs < 1 || options.num_nodes_per_submap < 1) {
-    return "num_pairs and num_nodes_per_submap must be positive";
-  }
-  if (!(options.min_hit_ratio >= 0. && options.min_hit_ratio <= 1.)) {
-    return "min_hit_ratio must lie between 0 and 1";
-  }
-  return "";
+  return options.num_pairs < 1 ? "num_pairs must be positive" : "";
 }
 
 absl::StatusOr<FalsifiedMap> FalsifyMap(
@@ -418,9 +391,7 @@ absl::StatusOr<FalsifiedMap> FalsifyMap(
   result.pose_graph = pose_graph;
   if (map->places.empty()) return result;
 
-  const ScansByNode scans =
-      ScansToRegister(ForgingOptions(loop_closing, options), *map);
-  Forger forger(loop_closing, options, *map, scans);
+  Forger forger(loop_closing, options.seed, *map);
   forger.MatchAliases(executor);
   size_t pair = 0;
   for (const FalseKind kind : options.kinds) {
@@ -436,9 +407,8 @@ absl::StatusOr<FalsifiedMap> FalsifyMap(
     }
   }
   if (!result.false_constraints.empty()) {
-    result.optimization =
-        Optimize(OptimizationInForce(loop_closing.closing, pose_graph),
-                 frozen_trajectories, &result.pose_graph);
+    Optimize(OptimizationInForce(loop_closing.closing, pose_graph),
+             frozen_trajectories, &result.pose_graph);
   }
   return result;
 }

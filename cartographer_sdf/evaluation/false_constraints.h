@@ -17,7 +17,6 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/apps/close_loops.h"
-#include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
@@ -38,11 +37,6 @@ struct FalsificationOptions {
   std::vector<FalseKind> kinds = AllFalseKinds();
   // Pairs of submaps of each kind; of a row of neighbours, rows.
   int num_pairs = 3;
-  // Nodes of each submap of a pair that get a constraint to the other.
-  int num_nodes_per_submap = 2;
-  // Where the scan is not on walls to this extent there is none, as there is a
-  // least score in Cartographer. Has no effect on kRandom.
-  double min_hit_ratio = 0.55;
   uint32_t seed = 1;
 };
 [[nodiscard]] std::string Validate(const FalsificationOptions& options);
@@ -58,7 +52,6 @@ struct FalsifiedMap {
   PoseGraph pose_graph;
   // Fewer than asked for where the map has no such pairs.
   std::vector<FalseConstraint> false_constraints;
-  OptimizationSummary optimization;
 };
 
 // The map's poses are taken for right. Of the options of loop closing those of

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <set>
 #include <utility>
 
-#include "cartographer_sdf/evaluation/error_statistics.h"
+#include "cartographer_sdf/evaluation/map_errors.h"
+#include "cartographer_sdf/evaluation/submap_cloud.h"
+#include "cartographer_sdf/place/trajectory_places.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -23,29 +24,31 @@ constexpr double kWrongTranslation = 1.;              // [m]
 constexpr double kRightRotation = 10. * M_PI / 180.;  // [rad]
 constexpr double kHighPrecision = 0.99;
 
-using Cell = std::pair<int64_t, int64_t>;
-using Area = std::vector<Cell>;  // sorted, each once
+using Area = std::vector<Square>;  // sorted, each once
 
 Area ObservedArea(const Rigid2& T_world_submap, const ObservedPoints& points) {
   Area area;
   for (const Eigen::Vector2d& p_submap : points) {
-    const Eigen::Vector2d p_world = T_world_submap * p_submap;
-    area.emplace_back(
-        static_cast<int64_t>(std::floor(p_world.x() / kCellSize)),
-        static_cast<int64_t>(std::floor(p_world.y() / kCellSize)));
+    area.push_back(SquareAt(T_world_submap * p_submap, kCellSize));
   }
   std::sort(area.begin(), area.end());
   area.erase(std::unique(area.begin(), area.end()), area.end());
   return area;
 }
 
-std::map<SubmapId, Area> ObservedAreas(
+struct SeenArea {
+  SubmapId id;
+  Rigid2 T_world_submap;
+  Area area;
+};
+
+std::vector<SeenArea> SeenAreas(
     const std::map<SubmapId, ObservedPoints>& submaps, const Truth& truth) {
-  std::map<SubmapId, Area> areas;
+  std::vector<SeenArea> areas;
   for (const auto& [id, points] : submaps) {
-    const auto T_world_submap = truth.T_world_submap.find(id);
-    if (T_world_submap != truth.T_world_submap.end() && !points.empty()) {
-      areas[id] = ObservedArea(T_world_submap->second, points);
+    const auto pose = truth.T_world_submap.find(id);
+    if (pose != truth.T_world_submap.end() && !points.empty()) {
+      areas.push_back({id, pose->second, ObservedArea(pose->second, points)});
     }
   }
   return areas;
@@ -64,22 +67,21 @@ Eigen::Vector2d Centre(const Area& area) {
   return kCellSize * (mean + Eigen::Vector2d::Constant(0.5));
 }
 
-PairTruth MakePairTruth(const Area& reference, const Area& query) {
+PairTruth MakePairTruth(const SeenArea& reference, const SeenArea& query) {
   Area both;
-  std::set_intersection(reference.begin(), reference.end(), query.begin(),
-                        query.end(), std::back_inserter(both));
+  std::set_intersection(reference.area.begin(), reference.area.end(),
+                        query.area.begin(), query.area.end(),
+                        std::back_inserter(both));
   PairTruth pair;
-  pair.overlap = static_cast<double>(both.size()) /
-                 static_cast<double>(std::min(reference.size(), query.size()));
-  pair.centre_world = Centre(both.empty() ? query : both);
+  pair.overlap =
+      static_cast<double>(both.size()) /
+      static_cast<double>(std::min(reference.area.size(), query.area.size()));
   pair.is_positive = pair.overlap >= kPositiveOverlap;
+  pair.T_reference_query =
+      reference.T_world_submap.Inverse() * query.T_world_submap;
+  pair.centre_query =
+      query.T_world_submap.Inverse() * Centre(both.empty() ? query.area : both);
   return pair;
-}
-
-bool AreNeighbours(const SubmapId& a, const SubmapId& b,
-                   const int min_index_gap) {
-  return a.trajectory == b.trajectory &&
-         std::abs(a.index - b.index) < min_index_gap;
 }
 
 AnswerVerdict Judge(const double translation_error,
@@ -95,70 +97,53 @@ AnswerVerdict Judge(const double translation_error,
   return AnswerVerdict::kNear;
 }
 
-AnswerLabel MakeLabel(const PairTruth& pair, const Rigid2& T_world_reference,
-                      const Rigid2& T_world_query, const MatchRow& match) {
+AnswerLabel MakeLabel(const PairTruth& pair, const MatchRow& match) {
   const Rigid2 T_true_found =
-      (T_world_reference.Inverse() * T_world_query).Inverse() *
-      match.T_reference_query;
-  const Eigen::Vector2d centre_query =
-      T_world_query.Inverse() * pair.centre_world;
+      pair.T_reference_query.Inverse() * match.T_reference_query;
   AnswerLabel label;
   label.reference = match.reference;
   label.query = match.query;
   label.score = match.score;
   label.overlap = pair.overlap;
   label.to_positive = pair.is_positive;
-  label.translation_error = (T_true_found * centre_query - centre_query).norm();
+  label.translation_error =
+      (T_true_found * pair.centre_query - pair.centre_query).norm();
   label.rotation_error = std::abs(T_true_found.rotation());
   label.verdict = Judge(label.translation_error, label.rotation_error);
   return label;
 }
 
-int CountPositives(const PairTruths& pairs) {
-  return static_cast<int>(
-      std::count_if(pairs.begin(), pairs.end(),
-                    [](const auto& pair) { return pair.second.is_positive; }));
-}
-
 // `answers` by falling score.
-void FollowPrecisionRecallCurve(const std::vector<AnswerLabel>& answers,
+void FollowPrecisionRecallCurve(std::vector<AnswerLabel> answers,
                                 MatchScore* const score) {
-  const double num_positives = std::max(1, score->num_positives);
-  int num_right = 0;
-  double sum_of_precisions = 0.;
-  for (const AnswerLabel& answer : answers) {
-    const bool is_right_positive =
-        answer.verdict == AnswerVerdict::kRight && answer.to_positive;
-    num_right += is_right_positive;
-    score->num_wrong += answer.verdict == AnswerVerdict::kWrong;
-    score->num_near += answer.verdict == AnswerVerdict::kNear;
-    const double precision =
-        static_cast<double>(num_right) /
-        static_cast<double>(std::max(1, num_right + score->num_wrong));
-    if (score->num_wrong == 0) {
-      score->recall_at_precision_1 = num_right / num_positives;
-      score->threshold = answer.score;
-    }
-    if (precision >= kHighPrecision) {
-      score->recall_at_precision_99 = num_right / num_positives;
-    }
-    if (is_right_positive) sum_of_precisions += precision;
+  for (size_t k = 0; k < answers.size(); ++k) {
+    score->num_wrong += answers[k].verdict == AnswerVerdict::kWrong;
+    score->num_near += answers[k].verdict == AnswerVerdict::kNear;
+    if (score->num_wrong == 0) score->threshold = answers[k].score;
+    // By rank, so that each has a point of the curve.
+    answers[k].score = -static_cast<double>(k);
   }
-  score->average_precision = sum_of_precisions / num_positives;
+  const PrecisionRecallCurve curve =
+      JudgeAnswers(answers, score->num_positives, AnswerJudgement::kByPose);
+  score->recall_at_precision_1 = curve.RecallAtPrecision1().value_or(0.);
+  score->average_precision = curve.AveragePrecision().value_or(0.);
+  for (const PrecisionRecallPoint& point : curve.points) {
+    if (point.precision < kHighPrecision) continue;
+    score->recall_at_precision_99 = point.recall;
+  }
 }
 
 void SummarizeErrors(const std::vector<AnswerLabel>& answers,
                      MatchScore* const score) {
-  std::vector<double> translations;
-  std::vector<double> rotations;
+  std::vector<PoseError> errors;
   for (const AnswerLabel& answer : answers) {
     if (answer.verdict != AnswerVerdict::kRight) continue;
-    translations.push_back(answer.translation_error);
-    rotations.push_back(answer.rotation_error);
+    errors.push_back({answer.translation_error, answer.rotation_error});
   }
-  if (translations.empty()) return;
-  score->median_translation_error = Summarize(std::move(translations))->median;
-  score->median_rotation_error = Summarize(std::move(rotations))->median;
+  const std::optional<PoseErrorStatistics> statistics = SummarizePoses(errors);
+  if (!statistics) return;
+  score->median_translation_error = statistics->translation.median;
+  score->median_rotation_error = statistics->rotation.median;
 }
 
 }  // namespace
@@ -178,15 +163,12 @@ ObservedPoints ThinnedObservedPoints(const OccupancyGrid& grid) {
 
 PairTruths ComputePairTruths(const std::map<SubmapId, ObservedPoints>& submaps,
                              const Truth& truth, const int min_index_gap) {
-  const std::map<SubmapId, Area> areas = ObservedAreas(submaps, truth);
+  const std::vector<SeenArea> areas = SeenAreas(submaps, truth);
   PairTruths pairs;
-  for (auto reference = areas.begin(); reference != areas.end(); ++reference) {
-    for (auto query = std::next(reference); query != areas.end(); ++query) {
-      if (AreNeighbours(reference->first, query->first, min_index_gap)) {
-        continue;
-      }
-      pairs[{reference->first, query->first}] =
-          MakePairTruth(reference->second, query->second);
+  for (size_t j = 0; j < areas.size(); ++j) {
+    for (size_t i = 0; i < j; ++i) {
+      if (ShareScans(areas[i].id, areas[j].id, min_index_gap)) continue;
+      pairs[{areas[i].id, areas[j].id}] = MakePairTruth(areas[i], areas[j]);
     }
   }
   return pairs;
@@ -197,13 +179,12 @@ PairTruths ComputePairTruths(
     const Truth& reference_truth,
     const std::map<SubmapId, ObservedPoints>& query_submaps,
     const Truth& query_truth) {
-  const std::map<SubmapId, Area> query_areas =
-      ObservedAreas(query_submaps, query_truth);
+  const std::vector<SeenArea> queries = SeenAreas(query_submaps, query_truth);
   PairTruths pairs;
-  for (const auto& [reference, reference_area] :
-       ObservedAreas(reference_submaps, reference_truth)) {
-    for (const auto& [query, query_area] : query_areas) {
-      pairs[{reference, query}] = MakePairTruth(reference_area, query_area);
+  for (const SeenArea& reference :
+       SeenAreas(reference_submaps, reference_truth)) {
+    for (const SeenArea& query : queries) {
+      pairs[{reference.id, query.id}] = MakePairTruth(reference, query);
     }
   }
   return pairs;
@@ -228,39 +209,33 @@ const char* AnswerVerdictName(const AnswerVerdict verdict) {
 }
 
 std::vector<AnswerLabel> LabelAnswers(const PairTruths& pairs,
-                                      const Truth& truth,
-                                      const std::vector<MatchRow>& matches) {
-  std::vector<MatchRow> ordered = matches;
-  for (MatchRow& match : ordered) {
-    if (match.query < match.reference) {
-      std::swap(match.reference, match.query);
-      match.T_reference_query = match.T_reference_query.Inverse();
-    }
-  }
-  return LabelAnswers(pairs, truth, truth, ordered);
-}
-
-std::vector<AnswerLabel> LabelAnswers(const PairTruths& pairs,
-                                      const Truth& reference_truth,
-                                      const Truth& query_truth,
                                       const std::vector<MatchRow>& matches) {
   std::vector<AnswerLabel> labels;
   std::set<std::pair<SubmapId, SubmapId>> seen;
   for (const MatchRow& match : matches) {
     const auto pair = pairs.find({match.reference, match.query});
     if (pair == pairs.end() || !seen.insert(pair->first).second) continue;
-    labels.push_back(MakeLabel(
-        pair->second, reference_truth.T_world_submap.at(match.reference),
-        query_truth.T_world_submap.at(match.query), match));
+    labels.push_back(MakeLabel(pair->second, match));
   }
   return labels;
+}
+
+void OrderByIds(std::vector<MatchRow>* const matches) {
+  for (MatchRow& match : *matches) {
+    if (match.query < match.reference) {
+      std::swap(match.reference, match.query);
+      match.T_reference_query = match.T_reference_query.Inverse();
+    }
+  }
 }
 
 MatchScore ScoreAnswers(const PairTruths& pairs,
                         const std::vector<AnswerLabel>& labels) {
   MatchScore score;
   score.num_pairs = static_cast<int>(pairs.size());
-  score.num_positives = CountPositives(pairs);
+  score.num_positives = static_cast<int>(
+      std::count_if(pairs.begin(), pairs.end(),
+                    [](const auto& pair) { return pair.second.is_positive; }));
   score.num_answers = static_cast<int>(labels.size());
   std::vector<AnswerLabel> answers = labels;
   std::stable_sort(answers.begin(), answers.end(),
@@ -272,29 +247,50 @@ MatchScore ScoreAnswers(const PairTruths& pairs,
   return score;
 }
 
-PrecisionRecallCurve JudgeAnswers(const PairTruths& pairs,
-                                  const std::vector<AnswerLabel>& labels) {
+PrecisionRecallCurve JudgeAnswers(const std::vector<AnswerLabel>& labels,
+                                  const int num_positives,
+                                  const AnswerJudgement judgement) {
   std::vector<JudgedAnswer> answers;
   for (const AnswerLabel& label : labels) {
-    if (label.verdict == AnswerVerdict::kWrong) {
+    if (judgement == AnswerJudgement::kByPair) {
+      answers.push_back({label.score, label.to_positive});
+    } else if (label.verdict == AnswerVerdict::kWrong) {
       answers.push_back({label.score, false});
     } else if (label.verdict == AnswerVerdict::kRight && label.to_positive) {
       answers.push_back({label.score, true});
     }
   }
-  return MakePrecisionRecallCurve(std::move(answers), CountPositives(pairs));
+  return MakePrecisionRecallCurve(std::move(answers), num_positives);
 }
 
-MatchScore ScoreMatches(const PairTruths& pairs, const Truth& truth,
-                        const std::vector<MatchRow>& matches) {
-  return ScoreAnswers(pairs, LabelAnswers(pairs, truth, matches));
-}
-
-MatchScore ScoreMatches(const PairTruths& pairs, const Truth& reference_truth,
-                        const Truth& query_truth,
-                        const std::vector<MatchRow>& matches) {
-  return ScoreAnswers(
-      pairs, LabelAnswers(pairs, reference_truth, query_truth, matches));
+PlaceRecognitionScore ScorePlaceRecognition(
+    const PairTruths& pairs, const std::vector<AnswerLabel>& labels,
+    const std::vector<MatchRow>& matches) {
+  PlaceRecognitionScore score;
+  std::set<SubmapId> queries, positive, matched, right;
+  for (const auto& [ids, truth] : pairs) {
+    queries.insert(ids.second);
+    if (truth.is_positive) positive.insert(ids.second);
+  }
+  std::set<std::pair<SubmapId, SubmapId>> accepted;
+  for (const MatchRow& match : matches) {
+    if (!match.accepted) continue;
+    accepted.insert({match.reference, match.query});
+    score.num_unknown += pairs.count({match.reference, match.query}) == 0;
+  }
+  for (const AnswerLabel& label : labels) {
+    if (accepted.count({label.reference, label.query}) == 0) continue;
+    score.num_right += label.verdict == AnswerVerdict::kRight;
+    score.num_near += label.verdict == AnswerVerdict::kNear;
+    score.num_wrong += label.verdict == AnswerVerdict::kWrong;
+    matched.insert(label.query);
+    if (label.verdict == AnswerVerdict::kRight) right.insert(label.query);
+  }
+  score.num_queries = static_cast<int>(queries.size());
+  score.num_queries_with_positive = static_cast<int>(positive.size());
+  score.num_queries_matched = static_cast<int>(matched.size());
+  score.num_queries_right = static_cast<int>(right.size());
+  return score;
 }
 
 }  // namespace cartographer_sdf

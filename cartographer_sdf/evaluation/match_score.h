@@ -21,10 +21,11 @@
 #include <vector>
 
 #include "cartographer_sdf/evaluation/precision_recall.h"
-#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/report/match_table.h"
+#include "cartographer_sdf/simulation/truth.h"
 
 namespace cartographer_sdf {
 
@@ -38,10 +39,11 @@ using ObservedPoints = std::vector<Eigen::Vector2d>;
 struct PairTruth {
   // Common area as a fraction of the smaller one's.
   double overlap = 0.;
-  // Centre of the common area; of the query's where there is none [m].
-  Eigen::Vector2d centre_world = Eigen::Vector2d::Zero();
   // Whether the overlap is enough to ask for an answer.
   bool is_positive = false;
+  Rigid2 T_reference_query;
+  // Centre of the common area; of the query's where there is none [m].
+  Eigen::Vector2d centre_query = Eigen::Vector2d::Zero();
 };
 using PairTruths = std::map<std::pair<SubmapId, SubmapId>, PairTruth>;
 
@@ -85,14 +87,13 @@ struct AnswerLabel {
   double rotation_error = 0.;     // not negative [rad]
 };
 
-// The first answer to each pair of `pairs`, in the order of the table. Matches
-// of one map: an answer for (i, j) with i > j is inverted, and labelled (j, i).
+// The first answer to each pair of `pairs`, in the order of the table.
 [[nodiscard]] std::vector<AnswerLabel> LabelAnswers(
-    const PairTruths& pairs, const Truth& truth,
-    const std::vector<MatchRow>& matches);
-[[nodiscard]] std::vector<AnswerLabel> LabelAnswers(
-    const PairTruths& pairs, const Truth& reference_truth,
-    const Truth& query_truth, const std::vector<MatchRow>& matches);
+    const PairTruths& pairs, const std::vector<MatchRow>& matches);
+
+// Inverts answers for (i, j) with i > j of matches of one map: labels and
+// scores are of pairs in the order of their ids.
+void OrderByIds(std::vector<MatchRow>* matches);
 
 struct MatchScore {
   int num_pairs = 0;
@@ -120,19 +121,44 @@ struct MatchScore {
 [[nodiscard]] MatchScore ScoreAnswers(const PairTruths& pairs,
                                       const std::vector<AnswerLabel>& labels);
 
+enum class AnswerJudgement {
+  // An answer to a positive pair is right, whatever its pose: the paper's.
+  kByPair,
+  // As ScoreAnswers: right where its pose is (AnswerVerdict) and the pair is
+  // positive, wrong where its pose is, and else neither.
+  kByPose,
+};
+
 // The same over the threshold, answers of one score together: unlike above, the
 // order of the table does not matter.
 [[nodiscard]] PrecisionRecallCurve JudgeAnswers(
-    const PairTruths& pairs, const std::vector<AnswerLabel>& labels);
+    const std::vector<AnswerLabel>& labels, int num_positives,
+    AnswerJudgement judgement);
 
-// ScoreAnswers of LabelAnswers.
-[[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,
-                                      const Truth& truth,
-                                      const std::vector<MatchRow>& matches);
-[[nodiscard]] MatchScore ScoreMatches(const PairTruths& pairs,
-                                      const Truth& reference_truth,
-                                      const Truth& query_truth,
-                                      const std::vector<MatchRow>& matches);
+// What a robot would have got from a table of matches ([Millane2019], Sec.
+// V-C): accepted matches, true and false, and how many of its submaps were
+// recognised at all.
+struct PlaceRecognitionScore {
+  // Accepted matches of pairs that can be judged, by what the truth says.
+  int num_right = 0;
+  int num_near = 0;
+  int num_wrong = 0;
+  // Accepted, but one of the submaps has no truth, or they are neighbours.
+  int num_unknown = 0;
+  // Query submaps that have a pair that can be judged; those with a positive
+  // one, that is, with something to recognise; those with an accepted match
+  // that can be judged; and with one that is right. Of pairs of one map, the
+  // later submap is the query.
+  int num_queries = 0;
+  int num_queries_with_positive = 0;
+  int num_queries_matched = 0;
+  int num_queries_right = 0;
+};
+
+// `labels` are LabelAnswers' of `matches` to `pairs`.
+[[nodiscard]] PlaceRecognitionScore ScorePlaceRecognition(
+    const PairTruths& pairs, const std::vector<AnswerLabel>& labels,
+    const std::vector<MatchRow>& matches);
 
 }  // namespace cartographer_sdf
 

@@ -32,13 +32,13 @@ std::optional<double> PrecisionRecallCurve::ThresholdAtPrecision1() const {
 
 std::optional<double> PrecisionRecallCurve::AveragePrecision() const {
   if (num_positives == 0) return std::nullopt;
-  double area = 0.;
-  double recall = 0.;
+  double sum = 0.;
+  int num_right = 0;
   for (const PrecisionRecallPoint& point : points) {
-    area += (point.recall - recall) * point.precision;
-    recall = point.recall;
+    sum += (point.num_right - num_right) * point.precision;
+    num_right = point.num_right;
   }
-  return area;
+  return sum / num_positives;
 }
 
 PrecisionRecallCurve MakePrecisionRecallCurve(std::vector<JudgedAnswer> answers,

@@ -28,12 +28,14 @@ double DrawRotation(std::mt19937_64* const engine) {
   return M_PI - 2. * M_PI * unit;
 }
 
-std::map<SubmapId, std::optional<Place>> DescribeReferences(
-    const PlaceMaker& make_place, const std::vector<TurnedPair>& pairs,
-    const Executor& executor) {
-  std::map<SubmapId, std::optional<Place>> places;
+using OptionalPlaces = std::map<SubmapId, std::optional<Place>>;
+
+OptionalPlaces DescribeReferences(const PlaceMaker& make_place,
+                                  const std::vector<TurnedPair>& pairs,
+                                  const Executor& executor) {
+  OptionalPlaces places;
   for (const TurnedPair& pair : pairs) places[pair.reference] = std::nullopt;
-  std::vector<std::pair<const SubmapId, std::optional<Place>>*> entries;
+  std::vector<OptionalPlaces::value_type*> entries;
   for (auto& entry : places) entries.push_back(&entry);
   executor(entries.size(), [&](const size_t k) {
     entries[k]->second = make_place(entries[k]->first, 0.);
@@ -56,21 +58,15 @@ std::optional<MatchRow> MatchPair(const MatchOptions& options,
 std::vector<std::optional<MatchRow>> MatchVariants(
     const MatchOptions& options, const TurnedPair& pair,
     const std::vector<double>& max_clearances, const Place& reference,
-    Place query) {
+    const Place& query) {
   std::vector<std::optional<MatchRow>> rows = {
       MatchPair(options, pair, reference, query)};
-  if (max_clearances.empty()) return rows;
-  Place near_reference;
-  Place near_query;
-  near_reference.id = reference.id;
-  near_query.id = query.id;
-  if (options.method != Method::kPaper) {
-    near_reference.surface = reference.surface;
-    near_query.surface = std::move(query.surface);
-  }
   for (const double max_clearance : max_clearances) {
+    Place near_reference, near_query;
+    near_reference.id = reference.id;
     near_reference.features =
         FeaturesNearWalls(reference.features, max_clearance);
+    near_query.id = query.id;
     near_query.features = FeaturesNearWalls(query.features, max_clearance);
     rows.push_back(MatchPair(options, pair, near_reference, near_query));
   }
@@ -110,10 +106,9 @@ PlaceMaker MakeGridPlaces(const PlaceOptions& place_options,
           const SubmapId& id, const double rotation) -> std::optional<Place> {
         const auto grid = grids.find(id);
         if (grid == grids.end()) return std::nullopt;
-        std::optional<Place> place =
-            rotation == 0. ? DescribePlace(place_options, id, grid->second)
-                           : DescribePlace(place_options, id,
-                                           TurnedGrid(grid->second, rotation));
+        std::optional<Place> place = DescribePlace(
+            place_options, id,
+            rotation == 0. ? grid->second : TurnedGrid(grid->second, rotation));
         if (place && match_options.method == Method::kSdf) {
           FindSelfSimilarities(match_options, &*place);
         }
@@ -142,20 +137,17 @@ PlaceMaker MakeCloudPlaces(const CloudPlaceOptions& options,
 FeatureSet FeaturesNearWalls(const FeatureSet& features,
                              const double max_clearance) {
   FeatureSet near;
-  std::vector<Eigen::Index> columns;
-  for (size_t k = 0; k < features.features.size(); ++k) {
-    if (std::abs(features.features[k].keypoint.clearance) > max_clearance) {
-      continue;
-    }
-    near.features.push_back(features.features[k]);
-    columns.push_back(static_cast<Eigen::Index>(k));
-  }
   near.descriptors.resize(features.descriptors.rows(),
-                          static_cast<Eigen::Index>(columns.size()));
-  for (size_t k = 0; k < columns.size(); ++k) {
-    near.descriptors.col(static_cast<Eigen::Index>(k)) =
-        features.descriptors.col(columns[k]);
+                          features.descriptors.cols());
+  Eigen::Index size = 0;
+  for (size_t k = 0; k < features.features.size(); ++k) {
+    const Feature& feature = features.features[k];
+    if (std::abs(feature.keypoint.clearance) > max_clearance) continue;
+    near.features.push_back(feature);
+    near.descriptors.col(size++) =
+        features.descriptors.col(static_cast<Eigen::Index>(k));
   }
+  near.descriptors.conservativeResize(Eigen::NoChange, size);
   return near;
 }
 
@@ -164,17 +156,18 @@ std::vector<std::vector<MatchRow>> MatchTurnedPairs(
     const std::vector<TurnedPair>& pairs,
     const std::vector<double>& max_clearances, const Executor& executor,
     const ProgressCallback& on_progress) {
-  const std::map<SubmapId, std::optional<Place>> references =
+  const OptionalPlaces references =
       DescribeReferences(make_place, pairs, executor);
   // By pairs, of which those without both places have no rows.
   std::vector<std::vector<std::optional<MatchRow>>> found(pairs.size());
   TaskProgress progress(on_progress, pairs.size());
   executor(pairs.size(), [&](const size_t k) {
     const std::optional<Place>& reference = references.at(pairs[k].reference);
-    std::optional<Place> query = make_place(pairs[k].query, pairs[k].rotation);
+    const std::optional<Place> query =
+        make_place(pairs[k].query, pairs[k].rotation);
     if (reference && query) {
-      found[k] = MatchVariants(options, pairs[k], max_clearances, *reference,
-                               *std::move(query));
+      found[k] =
+          MatchVariants(options, pairs[k], max_clearances, *reference, *query);
     }
     progress.TaskIsDone();
   });
@@ -197,18 +190,11 @@ PrecisionRecallCurve JudgePairs(const PairTruths& truths,
     num_positives +=
         truths.at({pair.reference, pair.query}).overlap >= min_overlap;
   }
-  std::vector<JudgedAnswer> answers;
-  for (const AnswerLabel& label : labels) {
-    const bool is_match = label.overlap >= min_overlap;
-    if (judgement == AnswerJudgement::kByPair) {
-      answers.push_back({label.score, is_match});
-    } else if (label.verdict == AnswerVerdict::kWrong) {
-      answers.push_back({label.score, false});
-    } else if (is_match && label.verdict == AnswerVerdict::kRight) {
-      answers.push_back({label.score, true});
-    }
+  std::vector<AnswerLabel> judged = labels;
+  for (AnswerLabel& label : judged) {
+    label.to_positive = label.overlap >= min_overlap;
   }
-  return MakePrecisionRecallCurve(std::move(answers), num_positives);
+  return JudgeAnswers(judged, num_positives, judgement);
 }
 
 }  // namespace cartographer_sdf

@@ -8,11 +8,9 @@
 #ifndef CARTOGRAPHER_SDF_EVALUATION_RANDOM_PAIRS_H_
 #define CARTOGRAPHER_SDF_EVALUATION_RANDOM_PAIRS_H_
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "cartographer_sdf/evaluation/match_score.h"
@@ -56,22 +54,14 @@ using PlaceMaker =
 
 // The answers to the pairs, each of the submaps as they are in the map (the
 // rotation taken back). One list for all features, then one for each of
-// `max_clearances`, by the features within that distance of walls alone. Pairs
-// without an answer are absent. The result does not depend on the executor.
+// `max_clearances`, by the features within that distance of walls alone; those
+// are for methods that need no more than features. Pairs without an answer are
+// absent. The result does not depend on the executor.
 [[nodiscard]] std::vector<std::vector<MatchRow>> MatchTurnedPairs(
     const MatchOptions& options, const PlaceMaker& make_place,
     const std::vector<TurnedPair>& pairs,
     const std::vector<double>& max_clearances, const Executor& executor,
     const ProgressCallback& on_progress = {});
-
-enum class AnswerJudgement {
-  // An answer to a pair that is a match is right, whatever its pose: the
-  // paper's.
-  kByPair,
-  // As ScoreAnswers: right where its pose is (AnswerVerdict) and the pair is a
-  // match, wrong where its pose is, and else neither.
-  kByPose,
-};
 
 // A pair is a match where the common area is at least `min_overlap` of the
 // smaller one's. `labels` are LabelAnswers' of answers to `pairs`.

@@ -4,10 +4,10 @@
 #include "cartographer_sdf/evaluation/submap_cloud.h"
 
 #include <cmath>
-#include <cstdint>
 #include <set>
-#include <utility>
 
+#include "cartographer_sdf/closing/constraint_generation.h"
+#include "cartographer_sdf/geometry/number_range.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -17,13 +17,13 @@ namespace {
 constexpr double kMaxPointCoordinate = 1e6;
 
 // The first and the last, and others evenly between.
-std::vector<NodeId> Thin(const std::set<NodeId>& nodes, const int max_size) {
-  const std::vector<NodeId> all(nodes.begin(), nodes.end());
+InsertedNodes Thin(const InsertedNodes& nodes, const int max_size) {
+  const std::vector<InsertedNodes::value_type> all(nodes.begin(), nodes.end());
   const size_t size = static_cast<size_t>(max_size);
-  if (all.size() <= size) return all;
-  std::vector<NodeId> thinned;
+  if (all.size() <= size) return nodes;
+  InsertedNodes thinned;
   for (size_t k = 0; k < size; ++k) {
-    thinned.push_back(all[size == 1 ? 0 : k * (all.size() - 1) / (size - 1)]);
+    thinned.insert(all[size == 1 ? 0 : k * (all.size() - 1) / (size - 1)]);
   }
   return thinned;
 }
@@ -31,12 +31,21 @@ std::vector<NodeId> Thin(const std::set<NodeId>& nodes, const int max_size) {
 }  // namespace
 
 std::string Validate(const SubmapCloudOptions& options) {
-  if (options.max_num_scans < 1) return "max_num_scans must be positive";
-  if (!(options.voxel_size_meters >= 0.005 &&
-        options.voxel_size_meters <= 10.)) {
-    return "voxel_size_meters must lie between 0.005 and 10";
+  return FirstOutside(
+      {{"max_num_scans", options.max_num_scans, 1, 1e5},
+       {"voxel_size_meters", options.voxel_size_meters, 0.005, 10.}});
+}
+
+Square SquareAt(const Eigen::Vector2d& point, const double side) {
+  return {static_cast<int64_t>(std::floor(point.x() / side)),
+          static_cast<int64_t>(std::floor(point.y() / side))};
+}
+
+PointRaster::PointRaster(const SubmapCloud& points, const double radius)
+    : points_(points), side_(radius) {
+  for (size_t k = 0; k < points.size(); ++k) {
+    squares_[SquareAt(points[k], side_)].push_back(static_cast<int>(k));
   }
-  return "";
 }
 
 SubmapCloud DownsampleCloud(const SubmapCloud& cloud, const double voxel_size) {
@@ -44,12 +53,10 @@ SubmapCloud DownsampleCloud(const SubmapCloud& cloud, const double voxel_size) {
     Eigen::Vector2d position = Eigen::Vector2d::Zero();
     int count = 0;
   };
-  std::map<std::pair<int64_t, int64_t>, Sum> voxels;
+  std::map<Square, Sum> voxels;
   for (const Eigen::Vector2d& point : cloud) {
     if (!(point.cwiseAbs().maxCoeff() < kMaxPointCoordinate)) continue;
-    Sum& sum =
-        voxels[{static_cast<int64_t>(std::floor(point.x() / voxel_size)),
-                static_cast<int64_t>(std::floor(point.y() / voxel_size))}];
+    Sum& sum = voxels[SquareAt(point, voxel_size)];
     sum.position += point;
     ++sum.count;
   }
@@ -64,17 +71,11 @@ absl::StatusOr<std::map<SubmapId, SubmapCloud>> ReadSubmapClouds(
     const SubmapCloudOptions& options, const std::string& path,
     const PoseGraph& pose_graph, const ProgressCallback& on_progress) {
   CHECK_EQ(Validate(options), "");
-  std::map<SubmapId, std::set<NodeId>> inserted;
-  for (const Constraint& constraint : pose_graph.constraints) {
-    if (constraint.tag == Constraint::Tag::kIntraSubmap) {
-      inserted[constraint.submap].insert(constraint.node);
-    }
-  }
-  std::map<SubmapId, std::vector<NodeId>> chosen;
+  std::map<SubmapId, InsertedNodes> chosen = FindInsertedNodes(pose_graph);
   std::set<NodeId> all;
-  for (const auto& [submap, nodes] : inserted) {
-    chosen[submap] = Thin(nodes, options.max_num_scans);
-    all.insert(chosen[submap].begin(), chosen[submap].end());
+  for (auto& [submap, nodes] : chosen) {
+    nodes = Thin(nodes, options.max_num_scans);
+    for (const auto& [id, pose] : nodes) all.insert(id);
   }
   const absl::StatusOr<std::map<NodeId, PointCloud2>> scans =
       ReadPointClouds(path, all, on_progress);
@@ -84,7 +85,7 @@ absl::StatusOr<std::map<SubmapId, SubmapCloud>> ReadSubmapClouds(
     const auto T_map_submap = pose_graph.submap_poses.find(submap);
     if (T_map_submap == pose_graph.submap_poses.end()) continue;
     SubmapCloud cloud;
-    for (const NodeId& id : nodes) {
+    for (const auto& [id, pose_by_local_slam] : nodes) {
       const auto scan = scans->find(id);
       const auto node = pose_graph.nodes.find(id);
       if (scan == scans->end() || node == pose_graph.nodes.end()) continue;

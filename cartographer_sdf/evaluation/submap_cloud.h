@@ -8,8 +8,10 @@
 #define CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -30,9 +32,45 @@ struct SubmapCloudOptions {
 
 using SubmapCloud = std::vector<Eigen::Vector2d>;  // submap frame [m]
 
+// A square of a raster with sides of that length [m].
+using Square = std::pair<int64_t, int64_t>;
+[[nodiscard]] Square SquareAt(const Eigen::Vector2d& point, double side);
+
 // Means of the points in each square of a raster, in the order of the raster.
 [[nodiscard]] SubmapCloud DownsampleCloud(const SubmapCloud& cloud,
                                           double voxel_size);
+
+// A cloud sorted into squares, to find points around a place. Holds a reference
+// to the points.
+class PointRaster {
+ public:
+  // `radius` > 0 is the largest distance that will be asked for.
+  PointRaster(const SubmapCloud& points, double radius);
+
+  // Calls `function(index)` for each point within the radius of `centre`, in an
+  // order that depends on the points and the centre alone.
+  template <typename Function>
+  void ForEachNear(const Eigen::Vector2d& centre, const double radius,
+                   const Function& function) const {
+    const auto [x, y] = SquareAt(centre, side_);
+    for (int64_t j = y - 1; j <= y + 1; ++j) {
+      for (int64_t i = x - 1; i <= x + 1; ++i) {
+        const auto square = squares_.find({i, j});
+        if (square == squares_.end()) continue;
+        for (const int k : square->second) {
+          if ((points_[k] - centre).squaredNorm() <= radius * radius) {
+            function(k);
+          }
+        }
+      }
+    }
+  }
+
+ private:
+  const SubmapCloud& points_;
+  const double side_;
+  std::map<Square, std::vector<int>> squares_;
+};
 
 // Of each submap of the pose graph that scans were inserted into. Nodes without
 // a point cloud are passed over; clouds in the file are what the host matched:

@@ -3,14 +3,12 @@
 
 #include "cartographer_sdf/live/live_options.h"
 
-#include "cartographer_sdf/config/lua_dictionary.h"
-#include "cartographer_sdf/config/option_binding.h"
 #include "cartographer_sdf/config/option_keys.h"
 
 namespace cartographer_sdf {
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, LiveLocalizationOptions& options) {
+inline void VisitOptions(OptionVisitor& visit,
+                         LiveLocalizationOptions& options) {
   visit("enabled", options.enabled);
   visit("query_interval_meters", options.query_interval_meters);
   visit("window_meters", options.window_meters);
@@ -23,8 +21,7 @@ void VisitOptions(Visitor& visit, LiveLocalizationOptions& options) {
   visit("max_rotation_difference", options.max_rotation_difference);
 }
 
-template <typename Visitor>
-void VisitOptions(Visitor& visit, LiveOptions& options) {
+inline void VisitOptions(OptionVisitor& visit, LiveOptions& options) {
   visit("enabled", options.enabled);
   visit("inject_constraints", options.inject_constraints);
   visit("log_closures", options.log_closures);
@@ -85,14 +82,11 @@ std::string Validate(const LiveOptions& options) {
 
 absl::StatusOr<LiveOptions> LoadLiveOptions(
     const std::vector<std::string>& directories, const std::string& basename) {
-  const absl::StatusOr<LuaDictionary> dictionary =
-      LoadLuaDictionary(directories, basename, kTableName);
-  if (!dictionary.ok()) return dictionary.status();
-  return ReadOptions<LiveOptions>(*dictionary);
+  return LoadTable<LiveOptions>(directories, basename, kTableName);
 }
 
 std::string FormatLiveOptions(const LiveOptions& options) {
-  return FormatOptions(kTableName, options) + "\nreturn " + kTableName + "\n";
+  return FormatFile(kTableName, options);
 }
 
 }  // namespace cartographer_sdf

@@ -5,33 +5,21 @@
 
 #include <cmath>
 
+#include "cartographer_sdf/geometry/number_range.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 
 std::string Validate(const DriftOptions& options) {
-  if (!(std::abs(options.odometry_scale_error) <= 0.5)) {
-    return "odometry_scale_error must lie within 0.5";
-  }
-  if (!(std::abs(options.odometry_yaw_bias) <= 1.)) {
-    return "odometry_yaw_bias must lie within 1 rad/m";
-  }
-  if (!(options.odometry_yaw_noise >= 0. && options.odometry_yaw_noise <= 1.)) {
-    return "odometry_yaw_noise must lie between 0 and 1 rad/sqrt(m)";
-  }
-  if (!(options.local_slam_fraction >= 0. &&
-        options.local_slam_fraction <= 1.)) {
-    return "local_slam_fraction must lie between 0 and 1";
-  }
-  if (!(options.local_slam_noise_translation >= 0. &&
-        options.local_slam_noise_translation <= 1.)) {
-    return "local_slam_noise_translation must lie between 0 m and 1 m";
-  }
-  if (!(options.local_slam_noise_rotation >= 0. &&
-        options.local_slam_noise_rotation <= 1.)) {
-    return "local_slam_noise_rotation must lie between 0 and 1 rad";
-  }
-  return "";
+  return FirstOutside(
+      {{"odometry_scale_error", options.odometry_scale_error, -0.5, 0.5},
+       {"odometry_yaw_bias", options.odometry_yaw_bias, -1., 1.},
+       {"odometry_yaw_noise", options.odometry_yaw_noise, 0., 1.},
+       {"local_slam_fraction", options.local_slam_fraction, 0., 1.},
+       {"local_slam_noise_translation", options.local_slam_noise_translation,
+        0., 1.},
+       {"local_slam_noise_rotation", options.local_slam_noise_rotation, 0.,
+        1.}});
 }
 
 std::vector<DriftedPose> AddDrift(const std::vector<DrivenPose>& drive,

@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/geometry/number_range.h"
 #include "cartographer_sdf/simulation/path_planner.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
 #include "glog/logging.h"
@@ -26,20 +27,14 @@ constexpr double kRoundTrips = 2.25;
 constexpr int kMaxPlaces = 40;
 
 struct Waypoint {
-  Eigen::Array2i cell;
+  int cell;
   ShortestPaths paths;
 };
 
-int FlatIndex(const NavigationGrid& grid, const Eigen::Array2i& cell) {
-  return cell.x() + grid.geometry.size.x() * cell.y();
-}
-
 // A reachable cell whose cost from all places is at least half of the largest
 // there is; any reachable cell while there are no places.
-Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
-                           const std::vector<Waypoint>& places,
-                           RandomNumbers* const random) {
-  const int stride = grid.geometry.size.x();
+int DrawFarCell(const NavigationGrid& grid, const std::vector<Waypoint>& places,
+                RandomNumbers* const random) {
   std::vector<std::pair<float, int>> candidates;
   float largest = 0.f;
   for (int k = 0; k != grid.reachable.size(); ++k) {
@@ -56,26 +51,22 @@ Eigen::Array2i DrawFarCell(const NavigationGrid& grid,
                                     return candidate.first < 0.5f * largest;
                                   }),
                    candidates.end());
-  const int cell =
-      candidates[random->Index(static_cast<int>(candidates.size()))].second;
-  return {cell % stride, cell / stride};
+  return candidates[random->Index(static_cast<int>(candidates.size()))].second;
 }
 
-float Cost(const NavigationGrid& grid, const Waypoint& from,
-           const Waypoint& to) {
-  return from.paths.cost[FlatIndex(grid, to.cell)];
+float Cost(const Waypoint& from, const Waypoint& to) {
+  return from.paths.cost[to.cell];
 }
 
 // Where the new place adds least to the round trip: after which place of it.
-size_t CheapestInsertion(const NavigationGrid& grid,
-                         const std::vector<Waypoint>& trip,
+size_t CheapestInsertion(const std::vector<Waypoint>& trip,
                          const Waypoint& place) {
   size_t best = 0;
   float best_detour = std::numeric_limits<float>::infinity();
   for (size_t k = 0; k != trip.size(); ++k) {
     const Waypoint& next = trip[(k + 1) % trip.size()];
-    const float detour = Cost(grid, trip[k], place) + Cost(grid, place, next) -
-                         Cost(grid, trip[k], next);
+    const float detour =
+        Cost(trip[k], place) + Cost(place, next) - Cost(trip[k], next);
     if (detour < best_detour) {
       best_detour = detour;
       best = k;
@@ -84,11 +75,10 @@ size_t CheapestInsertion(const NavigationGrid& grid,
   return best;
 }
 
-float RoundTripCost(const NavigationGrid& grid,
-                    const std::vector<Waypoint>& trip) {
+float RoundTripCost(const std::vector<Waypoint>& trip) {
   float cost = 0.f;
   for (size_t k = 0; k != trip.size(); ++k) {
-    cost += Cost(grid, trip[k], trip[(k + 1) % trip.size()]);
+    cost += Cost(trip[k], trip[(k + 1) % trip.size()]);
   }
   return cost;
 }
@@ -98,11 +88,11 @@ std::vector<Waypoint> PlanRoundTrip(const NavigationGrid& grid,
                                     RandomNumbers* const random) {
   std::vector<Waypoint> trip;
   while (trip.size() < 2 ||
-         (RoundTripCost(grid, trip) < length && trip.size() < kMaxPlaces)) {
-    const Eigen::Array2i cell = DrawFarCell(grid, trip, random);
+         (RoundTripCost(trip) < length && trip.size() < kMaxPlaces)) {
+    const int cell = DrawFarCell(grid, trip, random);
     Waypoint place{cell, FindShortestPaths(grid, cell)};
     const size_t position =
-        trip.empty() ? 0 : CheapestInsertion(grid, trip, place) + 1;
+        trip.empty() ? 0 : CheapestInsertion(trip, place) + 1;
     trip.insert(trip.begin() + position, std::move(place));
   }
   return trip;
@@ -178,24 +168,12 @@ std::vector<DrivenPose> Follow(const Path& path, const DriveOptions& options) {
 }  // namespace
 
 std::string Validate(const DriveOptions& options) {
-  if (!(options.length > 0. && options.length <= 1e5)) {
-    return "length must lie between 0 m and 100 km";
-  }
-  if (!(options.clearance > 0. &&
-        options.clearance < NavigationGrid::kMaxClearance)) {
-    return absl::StrCat("clearance must lie between 0 m and ",
-                        NavigationGrid::kMaxClearance, " m");
-  }
-  if (!(options.speed > 0. && options.speed <= 10.)) {
-    return "speed must lie between 0 m/s and 10 m/s";
-  }
-  if (!(options.turn_rate > 0. && options.turn_rate <= 10.)) {
-    return "turn_rate must lie between 0 rad/s and 10 rad/s";
-  }
-  if (!(options.time_step >= 1e-3 && options.time_step <= 0.1)) {
-    return "time_step must lie between 1 ms and 0.1 s";
-  }
-  return "";
+  return FirstOutside({{"length", options.length, 0.01, 1e5},
+                       {"clearance", options.clearance, 0.01,
+                        NavigationGrid::kMaxClearance - 0.01},
+                       {"speed", options.speed, 0.01, 10.},
+                       {"turn_rate", options.turn_rate, 0.01, 10.},
+                       {"time_step", options.time_step, 1e-3, 0.1}});
 }
 
 absl::StatusOr<std::vector<DrivenPose>> Drive(const FloorPlan& plan,

@@ -3,14 +3,12 @@
 
 #include "cartographer_sdf/simulation/floor_plan.h"
 
-#include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -19,26 +17,25 @@
 namespace cartographer_sdf {
 namespace {
 
-// Bounds the memory that a hostile header can ask for.
+// Bound the memory that a hostile header can ask for, and its number of cells
+// along an axis.
 constexpr int64_t kMaxPixels = 25'000'000;
+constexpr int64_t kMaxSide = 30'000;
 // The free threshold of ROS's map_server, 0.196 occupied, rounded so that its
 // grey of the unknown (205 of 255) is not free.
 constexpr double kFreeBrightness = 0.81;
 
 // Reads a decimal number of a PGM header or of P2 data; nothing where there is
 // none or it exceeds `maximum`.
-std::optional<int64_t> ReadNumber(const int64_t maximum, std::istream* in) {
-  while (std::isspace(in->peek()) || in->peek() == '#') {
-    if (in->get() == '#') {
-      while (in->good() && in->get() != '\n') {
-      }
-    }
+std::optional<int64_t> ReadNumber(const int64_t maximum,
+                                  std::istream* const in) {
+  while ((*in >> std::ws).peek() == '#') {
+    in->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   }
-  if (!std::isdigit(in->peek())) return std::nullopt;
   int64_t number = 0;
-  while (std::isdigit(in->peek())) {
-    number = 10 * number + (in->get() - '0');
-    if (number > maximum) return std::nullopt;
+  // Without a sign.
+  if (!std::isdigit(in->peek()) || !(*in >> number) || number > maximum) {
+    return std::nullopt;
   }
   return number;
 }
@@ -67,8 +64,8 @@ absl::StatusOr<PgmHeader> ReadPgmHeader(const std::string& path,
     return absl::InvalidArgumentError(
         absl::StrCat(path, " is not a PGM image (P2 or P5)"));
   }
-  const std::optional<int64_t> width = ReadNumber(kMaxPixels, in);
-  const std::optional<int64_t> height = ReadNumber(kMaxPixels, in);
+  const std::optional<int64_t> width = ReadNumber(kMaxSide, in);
+  const std::optional<int64_t> height = ReadNumber(kMaxSide, in);
   const std::optional<int64_t> maximum = ReadNumber(65535, in);
   if (!width || !height || !maximum || *width < 1 || *height < 1 ||
       *maximum < 1 || *width > kMaxPixels / *height ||
@@ -77,25 +74,6 @@ absl::StatusOr<PgmHeader> ReadPgmHeader(const std::string& path,
         absl::StrCat("the PGM header of ", path, " is broken or too large"));
   }
   return PgmHeader{is_text, *width, *height, *maximum};
-}
-
-// Of each pixel, from the upper left on by rows.
-absl::StatusOr<std::vector<bool>> ReadOccupied(const std::string& path,
-                                               const PgmHeader& header,
-                                               std::istream* const in) {
-  std::vector<bool> occupied;  // Grows with the data, not with the header.
-  const int64_t num_pixels = header.width * header.height;
-  for (int64_t k = 0; k != num_pixels; ++k) {
-    const std::optional<int64_t> pixel =
-        ReadPixel(header.is_text, header.maximum, in);
-    if (!pixel) {
-      return absl::DataLossError(absl::StrCat(
-          path, " ends or is corrupted at pixel ", k, " of ", num_pixels));
-    }
-    occupied.push_back(static_cast<double>(*pixel) <
-                       kFreeBrightness * static_cast<double>(header.maximum));
-  }
-  return occupied;
 }
 
 // Calls visit(cell, its centre from that of the box) for the cells of a box of
@@ -114,21 +92,6 @@ void VisitBox(const CellGeometry& geometry, const Eigen::Vector2d& centre,
     }
   }
 }
-
-}  // namespace
-
-FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size, const double resolution) {
-  CHECK_GT(resolution, 0.);
-  FloorPlan plan;
-  plan.geometry.resolution = resolution;
-  plan.geometry.size =
-      (size.array() / resolution - 1e-9).ceil().cast<int>().max(1);
-  plan.occupied = BoolArray::Constant(plan.geometry.size.x(),
-                                      plan.geometry.size.y(), false);
-  return plan;
-}
-
-namespace {
 
 template <typename Visitor>
 void VisitRectangle(const CellGeometry& geometry, const Eigen::Vector2d& centre,
@@ -163,6 +126,17 @@ void MarkOccupied(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
 
 }  // namespace
 
+FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size, const double resolution) {
+  CHECK_GT(resolution, 0.);
+  FloorPlan plan;
+  plan.geometry.resolution = resolution;
+  plan.geometry.size =
+      (size.array() / resolution - 1e-9).ceil().cast<int>().max(1);
+  plan.occupied = BoolArray::Constant(plan.geometry.size.x(),
+                                      plan.geometry.size.y(), false);
+  return plan;
+}
+
 void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                    const double yaw, const bool occupied,
                    FloorPlan* const plan) {
@@ -182,10 +156,10 @@ void MakeUnseen(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
 }
 
 void FillDisc(const Eigen::Vector2d& centre, const double radius,
-              const bool occupied, FloorPlan* const plan) {
+              FloorPlan* const plan) {
   VisitBox(plan->geometry, centre, Eigen::Vector2d::Constant(radius),
            [&](const int i, const int j, const Eigen::Vector2d& offset) {
-             if (offset.norm() <= radius) plan->occupied(i, j) = occupied;
+             if (offset.norm() <= radius) plan->occupied(i, j) = true;
            });
 }
 
@@ -199,18 +173,21 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
   if (!in) return absl::NotFoundError(absl::StrCat("cannot open ", path));
   const absl::StatusOr<PgmHeader> header = ReadPgmHeader(path, &in);
   if (!header.ok()) return header.status();
-  const absl::StatusOr<std::vector<bool>> occupied =
-      ReadOccupied(path, *header, &in);
-  if (!occupied.ok()) return occupied.status();
   const auto& [is_text, width, height, maximum] = *header;
   FloorPlan plan;
   plan.geometry.resolution = resolution;
   plan.geometry.size = Eigen::Array2i(width, height);
   plan.occupied.resize(width, height);
-  for (int64_t j = 0; j != height; ++j) {
-    for (int64_t i = 0; i != width; ++i) {
-      plan.occupied(i, height - 1 - j) = (*occupied)[j * width + i];
+  for (int64_t k = 0; k != width * height; ++k) {
+    const std::optional<int64_t> pixel = ReadPixel(is_text, maximum, &in);
+    if (!pixel) {
+      return absl::DataLossError(absl::StrCat(
+          path, " ends or is corrupted at pixel ", k, " of ", width * height));
     }
+    // By rows, from the upper left on.
+    plan.occupied(k % width, height - 1 - k / width) =
+        static_cast<double>(*pixel) <
+        kFreeBrightness * static_cast<double>(maximum);
   }
   return plan;
 }

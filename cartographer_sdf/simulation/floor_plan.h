@@ -32,11 +32,11 @@ struct FloorPlan {
 [[nodiscard]] FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size,
                                        double resolution);
 
-// Set the cells whose centres lie in the shape, clipped to the plan.
+// Set the cells whose centres lie in the shape, clipped to the plan; a disc is
+// occupied.
 void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                    double yaw, bool occupied, FloorPlan* plan);
-void FillDisc(const Eigen::Vector2d& centre, double radius, bool occupied,
-              FloorPlan* plan);
+void FillDisc(const Eigen::Vector2d& centre, double radius, FloorPlan* plan);
 
 // The same for what is occupied in the rectangle: makes it of glass, or sets
 // whether it is unseen.

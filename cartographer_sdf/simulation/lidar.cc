@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cartographer_sdf/geometry/number_range.h"
 #include "cartographer_sdf/grid/grid_traversal.h"
 
 namespace cartographer_sdf {
@@ -30,25 +31,13 @@ std::optional<double> RangeToPeople(const std::vector<Person>& people,
 }  // namespace
 
 std::string Validate(const LidarOptions& options) {
-  if (options.num_beams < 1 || options.num_beams > 10000) {
-    return "num_beams must lie between 1 and 10000";
-  }
-  if (!(options.field_of_view > 0. && options.field_of_view <= 2. * M_PI)) {
-    return "field_of_view must lie between 0 and 2 pi";
-  }
-  if (!(options.max_range > 0. && options.max_range <= 200.)) {
-    return "max_range must lie between 0 m and 200 m";
-  }
-  if (!(options.range_noise >= 0. && options.range_noise <= 1.)) {
-    return "range_noise must lie between 0 m and 1 m";
-  }
-  if (!(options.drop_outs >= 0. && options.drop_outs <= 1.)) {
-    return "drop_outs must lie between 0 and 1";
-  }
-  if (!(options.glass_echo >= 0. && options.glass_echo <= 1.)) {
-    return "glass_echo must lie between 0 and 1";
-  }
-  return "";
+  return FirstOutside(
+      {{"num_beams", options.num_beams, 1, 10000},
+       {"field_of_view", options.field_of_view, 0.001, 2. * M_PI},
+       {"max_range", options.max_range, 0.01, 200.},
+       {"range_noise", options.range_noise, 0., 1.},
+       {"drop_outs", options.drop_outs, 0., 1.},
+       {"glass_echo", options.glass_echo, 0., 1.}});
 }
 
 std::optional<double> CastRay(const FloorPlan& plan,

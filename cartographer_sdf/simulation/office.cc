@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cartographer_sdf/geometry/number_range.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
 #include "glog/logging.h"
 
@@ -23,8 +24,10 @@ constexpr double kMinRoomDepth = 4.8;
 constexpr double kMaxRoomDepth = 6.5;
 constexpr double kMinRoomWidth = 3.;
 constexpr double kMaxRoomWidth = 8.;
-// What doors keep free of furniture, beyond half their width [m].
-constexpr double kDoorMargin = 0.8;
+constexpr double kCorridorWidth = 2.2;
+constexpr double kDoorWidth = 1.1;
+// What doors keep free of furniture about their middle [m].
+constexpr double kDoorRadius = 0.5 * kDoorWidth + 0.8;
 
 struct Room {
   AlignedBox2d box;
@@ -81,7 +84,6 @@ std::vector<Room> MakeRooms(const OfficeOptions& options,
   };
   const double west = depth(), east = options.width - depth();
   const double south = depth(), north = options.height - depth();
-  const double corridor = options.corridor_width;
   const Vector2d none = Vector2d::Zero();
   const Vector2d corners(west, options.width - east);
   std::vector<Room> rooms;
@@ -95,14 +97,14 @@ std::vector<Room> MakeRooms(const OfficeOptions& options,
   AddRow(box(0., south, west, north), Vector2d::UnitX(), none, random, &rooms);
   AddRow(box(east, south, options.width, north), -Vector2d::UnitX(), none,
          random, &rooms);
-  const AlignedBox2d core =
-      box(west + corridor, south + corridor, east - corridor, north - corridor);
+  const AlignedBox2d core = box(west + kCorridorWidth, south + kCorridorWidth,
+                                east - kCorridorWidth, north - kCorridorWidth);
   const double crossing =
       core.center().x() + random->Uniform(-0.1, 0.1) * core.sizes().x();
   for (const AlignedBox2d& half :
-       {box(core.min().x(), core.min().y(), crossing - 0.5 * corridor,
+       {box(core.min().x(), core.min().y(), crossing - 0.5 * kCorridorWidth,
             core.max().y()),
-        box(crossing + 0.5 * corridor, core.min().y(), core.max().x(),
+        box(crossing + 0.5 * kCorridorWidth, core.min().y(), core.max().x(),
             core.max().y())}) {
     const double middle =
         half.center().y() + random->Uniform(-0.15, 0.15) * half.sizes().y();
@@ -140,8 +142,8 @@ void OpenTable(const Vector2d& centre, const Vector2d& size, const double yaw,
 
 // A piece of furniture with its back to a wall of the interior.
 void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
-                    const double door_radius, RandomNumbers* const random,
-                    const bool is_open, FloorPlan* const plan) {
+                    RandomNumbers* const random, const bool is_open,
+                    FloorPlan* const plan) {
   const bool is_desk = random->Chance(0.5);
   const double depth =
       is_desk ? random->Uniform(0.6, 0.9) : random->Uniform(0.3, 0.55);
@@ -156,7 +158,7 @@ void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
   centre[1 - along] = random->Chance(0.5)
                           ? interior.min()[1 - along] + 0.5 * depth
                           : interior.max()[1 - along] - 0.5 * depth;
-  if ((centre - door).norm() < door_radius + 0.5 * length) return;
+  if ((centre - door).norm() < kDoorRadius + 0.5 * length) return;
   FillRectangle(centre, size, 0., true, plan);
   if (!is_desk) return;
   if (is_open) OpenTable(centre, size, 0., plan);
@@ -165,13 +167,13 @@ void AddAgainstWall(const AlignedBox2d& interior, const Vector2d& door,
       centre[1 - along] < interior.center()[1 - along] ? 1. : -1.;
   chair[along] += random->Uniform(-0.3, 0.3) * length;
   chair[1 - along] += side * (0.5 * depth + random->Uniform(0.2, 0.4));
-  FillDisc(chair, 0.22, true, plan);
+  FillDisc(chair, 0.22, plan);
 }
 
 // A round or rectangular table with chairs, or a pillar.
 void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
-                     const double door_radius, RandomNumbers* const random,
-                     const bool is_open, FloorPlan* const plan) {
+                     RandomNumbers* const random, const bool is_open,
+                     FloorPlan* const plan) {
   constexpr double kMargin = 1.2;
   if (interior.sizes().minCoeff() < 2. * kMargin + 0.5) return;
   const Vector2d centre(random->Uniform(interior.min().x() + kMargin,
@@ -179,14 +181,14 @@ void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
                         random->Uniform(interior.min().y() + kMargin,
                                         interior.max().y() - kMargin));
   const double radius = random->Uniform(0.35, 0.7);
-  if ((centre - door).norm() < door_radius + radius + 0.4) return;
+  if ((centre - door).norm() < kDoorRadius + radius + 0.4) return;
   const double yaw = random->Uniform(0., M_PI);
   switch (random->Index(3)) {
     case 0:
       FillRectangle(centre, Vector2d::Constant(0.8 * radius), 0., true, plan);
       return;
     case 1:
-      FillDisc(centre, radius, true, plan);
+      FillDisc(centre, radius, plan);
       if (is_open) {
         // The square within.
         MakeUnseen(centre, Vector2d::Constant(2. * radius), 0., true, plan);
@@ -201,7 +203,7 @@ void AddFreestanding(const AlignedBox2d& interior, const Vector2d& door,
     const double angle = random->Uniform(0., 2. * M_PI);
     FillDisc(
         centre + (radius + 0.25) * Vector2d(std::cos(angle), std::sin(angle)),
-        0.2, true, plan);
+        0.2, plan);
   }
 }
 
@@ -210,15 +212,14 @@ void FurnishRoom(const OfficeOptions& options, const Room& room,
                  RandomNumbers* const materials, FloorPlan* const plan) {
   const Vector2d inset = Vector2d::Constant(0.5 * options.wall_thickness);
   const AlignedBox2d interior(room.box.min() + inset, room.box.max() - inset);
-  const double door_radius = 0.5 * options.door_width + kDoorMargin;
   const int pieces = static_cast<int>(
       std::lround(interior.volume() * options.furniture_density));
   for (int k = 0; k != pieces; ++k) {
     const bool is_open = materials->Chance(options.open_tables);
     if (random->Chance(0.6)) {
-      AddAgainstWall(interior, door, door_radius, random, is_open, plan);
+      AddAgainstWall(interior, door, random, is_open, plan);
     } else {
-      AddFreestanding(interior, door, door_radius, random, is_open, plan);
+      AddFreestanding(interior, door, random, is_open, plan);
     }
   }
 }
@@ -235,10 +236,7 @@ void FurnishCorridor(const OfficeOptions& options, const Room& room,
       room.wall_begin +
       random->Uniform(0.5 * length, wall_length - 0.5 * length) * along +
       0.5 * (options.wall_thickness + depth) * room.outward;
-  if ((centre - door).norm() <
-      0.5 * (options.door_width + length) + kDoorMargin) {
-    return;
-  }
+  if ((centre - door).norm() < kDoorRadius + 0.5 * length) return;
   const double yaw = std::atan2(along.y(), along.x());
   FillRectangle(centre, Vector2d(length, depth), yaw, true, plan);
 }
@@ -247,38 +245,16 @@ void FurnishCorridor(const OfficeOptions& options, const Room& room,
 
 std::string Validate(const OfficeOptions& options) {
   // Four rows of rooms, three corridors.
-  const double smallest = 2. * (kMaxRoomDepth + options.corridor_width) +
-                          2. * kMinRoomWidth + options.corridor_width;
-  if (!(options.corridor_width >= 1.5 && options.corridor_width <= 5.)) {
-    return "corridor_width must lie between 1.5 m and 5 m";
-  }
-  if (!(options.width >= smallest && options.height >= smallest &&
-        options.width <= 500. && options.height <= 500.)) {
-    return "width and height must hold the rooms and corridors, and stay "
-           "within 500 m";
-  }
-  if (!(options.wall_thickness > 0. && options.wall_thickness <= 0.5)) {
-    return "wall_thickness must lie between 0 m and 0.5 m";
-  }
-  if (!(options.door_width >= 0.6 && options.door_width <= 2.)) {
-    return "door_width must lie between 0.6 m and 2 m";
-  }
-  if (!(options.closed_doors >= 0. && options.closed_doors <= 1.)) {
-    return "closed_doors must lie between 0 and 1";
-  }
-  if (!(options.furniture_density >= 0. && options.furniture_density <= 1.)) {
-    return "furniture_density must lie between 0 and 1 per square metre";
-  }
-  if (!(options.glass_fronts >= 0. && options.glass_fronts <= 1.)) {
-    return "glass_fronts must lie between 0 and 1";
-  }
-  if (!(options.open_tables >= 0. && options.open_tables <= 1.)) {
-    return "open_tables must lie between 0 and 1";
-  }
-  if (!(options.resolution >= 0.01 && options.resolution <= 0.1)) {
-    return "resolution must lie between 0.01 m and 0.1 m";
-  }
-  return "";
+  constexpr double kLeastSize =
+      2. * kMaxRoomDepth + 2. * kMinRoomWidth + 3. * kCorridorWidth;
+  return FirstOutside({{"width", options.width, kLeastSize, 500.},
+                       {"height", options.height, kLeastSize, 500.},
+                       {"wall_thickness", options.wall_thickness, 0.01, 0.5},
+                       {"closed_doors", options.closed_doors, 0., 1.},
+                       {"furniture_density", options.furniture_density, 0., 1.},
+                       {"glass_fronts", options.glass_fronts, 0., 1.},
+                       {"open_tables", options.open_tables, 0., 1.},
+                       {"resolution", options.resolution, 0.01, 0.1}});
 }
 
 FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
@@ -292,7 +268,7 @@ FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
     DrawWalls(room.box, options.wall_thickness, &plan);
   }
   for (const Room& room : rooms) {
-    const double margin = 0.5 * options.door_width + options.wall_thickness;
+    const double margin = 0.5 * kDoorWidth + options.wall_thickness;
     const double fraction = margin / (room.wall_end - room.wall_begin).norm();
     const Vector2d door =
         room.wall_begin + random.Uniform(fraction, 1. - fraction) *
@@ -300,7 +276,7 @@ FloorPlan MakeOffice(const OfficeOptions& options, const uint32_t seed) {
     if (!random.Chance(options.closed_doors)) {
       const Vector2d across = options.wall_thickness * room.outward.cwiseAbs();
       const Vector2d along =
-          options.door_width * (Vector2d::Ones() - room.outward.cwiseAbs());
+          kDoorWidth * (Vector2d::Ones() - room.outward.cwiseAbs());
       FillRectangle(door, 1.5 * across + along, 0., false, &plan);
     }
     FurnishRoom(options, room, door, &random, &materials, &plan);

@@ -19,9 +19,7 @@ struct OfficeOptions {
   // Outer size of the building [m].
   double width = 40.;
   double height = 30.;
-  double corridor_width = 2.2;
   double wall_thickness = 0.15;
-  double door_width = 1.1;
   // Fraction of the doors that are closed, and so are wall.
   double closed_doors = 0.12;
   // Pieces per square metre of room.

@@ -11,6 +11,7 @@
 #include <queue>
 #include <utility>
 
+#include "cartographer_sdf/field/distance_transform.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -33,47 +34,20 @@ void VisitNeighbours(const Eigen::Array2i& size, const int cell,
   }
 }
 
-// Squared distance of each cell to the nearest marked one, or to the border, in
-// its row along x, in cells; cut off at `reach`.
-Eigen::ArrayXXf SquaredDistanceInRows(const BoolArray& marked,
-                                      const float reach) {
-  const Eigen::Index width = marked.rows();
-  Eigen::ArrayXXf squared(width, marked.cols());
-  for (Eigen::Index j = 0; j != marked.cols(); ++j) {
-    float distance = 0.f;
-    for (Eigen::Index i = 0; i != width; ++i) {
-      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
-      squared(i, j) = distance;
-    }
-    distance = 0.f;
-    for (Eigen::Index i = width - 1; i >= 0; --i) {
-      distance = marked(i, j) ? 0.f : std::min(distance + 1.f, reach);
-      squared(i, j) = std::pow(std::min(squared(i, j), distance), 2.f);
-    }
-  }
-  return squared;
-}
-
-// Clearance at the resolution of the plan: the distance transform of
-// [Saito1994], along x, then along y within reach. What lies outside the plan
-// is occupied.
+// Clearance at the resolution of the plan. What lies outside the plan is
+// occupied.
 Eigen::ArrayXXf ComputeClearance(const FloorPlan& plan) {
+  const Eigen::Index width = plan.occupied.rows();
+  const Eigen::Index height = plan.occupied.cols();
+  BoolArray occupied = BoolArray::Constant(width + 2, height + 2, true);
+  occupied.block(1, 1, width, height) = plan.occupied;
   const double resolution = plan.geometry.resolution;
-  const double reach = NavigationGrid::kMaxClearance / resolution;
-  const Eigen::Index window = static_cast<Eigen::Index>(reach);
-  const Eigen::ArrayXXf in_rows =
-      SquaredDistanceInRows(plan.occupied, static_cast<float>(reach));
-  const Eigen::Index height = in_rows.cols();
-  Eigen::ArrayXXf squared(in_rows.rows(), height);
-  for (Eigen::Index j = 0; j != height; ++j) {
-    const auto border = static_cast<float>(std::min(j, height - 1 - j) + 1);
-    squared.col(j) = in_rows.col(j).min(border * border);
-    for (Eigen::Index k = std::max<Eigen::Index>(0, j - window);
-         k <= std::min(height - 1, j + window); ++k) {
-      const auto offset = static_cast<float>(k - j);
-      squared.col(j) = squared.col(j).min(in_rows.col(k) + offset * offset);
-    }
-  }
+  const auto reach =
+      static_cast<float>(NavigationGrid::kMaxClearance / resolution);
+  const Eigen::ArrayXXf squared = SquaredDistanceTransform(occupied)
+                                      .block(1, 1, width, height)
+                                      .cast<float>()
+                                      .min(reach * reach);
   return squared.sqrt() * static_cast<float>(resolution);
 }
 
@@ -129,10 +103,8 @@ NavigationGrid MakeNavigationGrid(const FloorPlan& plan,
   return grid;
 }
 
-ShortestPaths FindShortestPaths(const NavigationGrid& grid,
-                                const Eigen::Array2i& source) {
-  CHECK(grid.geometry.Contains(source) &&
-        grid.reachable(source.x(), source.y()));
+ShortestPaths FindShortestPaths(const NavigationGrid& grid, const int source) {
+  CHECK(grid.reachable(source));
   const Eigen::Array2i size = grid.geometry.size;
   const int num_cells = size.prod();
   ShortestPaths paths;
@@ -141,10 +113,9 @@ ShortestPaths FindShortestPaths(const NavigationGrid& grid,
   // Ties are broken by the index of the cell.
   using Entry = std::pair<float, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> queue;
-  const int first = source.x() + size.x() * source.y();
-  paths.cost[first] = 0.f;
-  paths.parent[first] = first;
-  queue.push({0.f, first});
+  paths.cost[source] = 0.f;
+  paths.parent[source] = source;
+  queue.push({0.f, source});
   const float resolution = static_cast<float>(grid.geometry.resolution);
   while (!queue.empty()) {
     const auto [cost, cell] = queue.top();
@@ -171,12 +142,11 @@ ShortestPaths FindShortestPaths(const NavigationGrid& grid,
 
 std::vector<Eigen::Vector2d> SmoothPath(const NavigationGrid& grid,
                                         const ShortestPaths& paths,
-                                        const Eigen::Array2i& target,
+                                        const int target,
                                         const double min_clearance) {
-  CHECK(grid.geometry.Contains(target));
+  CHECK_GE(paths.parent[target], 0);
   const int stride = grid.geometry.size.x();
-  int cell = target.x() + stride * target.y();
-  CHECK_GE(paths.parent[cell], 0);
+  int cell = target;
   std::vector<Eigen::Vector2d> path;
   while (true) {
     path.push_back(grid.geometry.CellCentre({cell % stride, cell / stride}));

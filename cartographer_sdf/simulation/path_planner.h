@@ -32,7 +32,7 @@ struct NavigationGrid {
 
 // Cheapest ways from one cell to every reachable one [Dijkstra1959]: over the
 // eight neighbours, metres in the open and up to thrice that along walls.
-// Indexed by i + size.x() * j.
+// Cells are numbered i + size.x() * j.
 struct ShortestPaths {
   // Infinite where there is no way.
   std::vector<float> cost;
@@ -41,13 +41,13 @@ struct ShortestPaths {
 };
 
 [[nodiscard]] ShortestPaths FindShortestPaths(const NavigationGrid& grid,
-                                              const Eigen::Array2i& source);
+                                              int source);
 
 // The way from the source to a reachable target in the world frame [m],
 // smoothed as far as the clearance allows.
 [[nodiscard]] std::vector<Eigen::Vector2d> SmoothPath(
-    const NavigationGrid& grid, const ShortestPaths& paths,
-    const Eigen::Array2i& target, double min_clearance);
+    const NavigationGrid& grid, const ShortestPaths& paths, int target,
+    double min_clearance);
 
 }  // namespace cartographer_sdf
 

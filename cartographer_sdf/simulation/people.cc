@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "absl/status/status.h"
+#include "cartographer_sdf/geometry/number_range.h"
 #include "cartographer_sdf/simulation/drive.h"
 #include "cartographer_sdf/simulation/path_planner.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
@@ -17,8 +18,6 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of those who walk [s].
-constexpr double kTimeStep = 0.1;
 // Between a person's centre and walls [m].
 constexpr double kClearance = 0.3;
 
@@ -30,17 +29,16 @@ const Eigen::Vector2d& AtOrLast(const Places& places, const double index) {
                          places.size() - 1)];
 }
 
-// Where somebody is who walks about, every kTimeStep.
-absl::StatusOr<Places> Walk(const FloorPlan& plan, const double speed,
-                            const double duration,
+// Where somebody is who walks about, every People::kTimeStep.
+absl::StatusOr<Places> Walk(const FloorPlan& plan, const double duration,
                             RandomNumbers* const random) {
   DriveOptions walk;
   walk.clearance = kClearance;
-  walk.speed = speed;
+  walk.speed = People::kWalkingSpeed;
   // Turns on the spot take time that is not walked.
-  walk.length = std::max(1., speed * duration);
+  walk.length = std::max(1., walk.speed * duration);
   walk.turn_rate = 3.;
-  walk.time_step = kTimeStep;
+  walk.time_step = People::kTimeStep;
   const absl::StatusOr<std::vector<DrivenPose>> driven =
       Drive(plan, walk, static_cast<uint32_t>(random->Index(1 << 30)));
   if (!driven.ok()) return driven.status();
@@ -76,20 +74,8 @@ Places DrawPlaces(const Places& room, const int num_places,
 }  // namespace
 
 std::string Validate(const PeopleOptions& options) {
-  if (options.num_walking < 0 || options.num_walking > 100 ||
-      options.num_standing < 0 || options.num_standing > 1000) {
-    return "there can be 0 to 100 people walking and 0 to 1000 standing";
-  }
-  if (!(options.radius > 0. && options.radius <= kClearance)) {
-    return "radius must lie between 0 m and 0.3 m";
-  }
-  if (!(options.walking_speed > 0. && options.walking_speed <= 10.)) {
-    return "walking_speed must lie between 0 m/s and 10 m/s";
-  }
-  if (!(options.standing_time >= 1. && options.standing_time <= 1e6)) {
-    return "standing_time must lie between 1 s and 1e6 s";
-  }
-  return "";
+  return FirstOutside({{"num_walking", options.num_walking, 0, 100},
+                       {"num_standing", options.num_standing, 0, 1000}});
 }
 
 std::vector<Person> People::At(const double seconds,
@@ -97,12 +83,12 @@ std::vector<Person> People::At(const double seconds,
   std::vector<Person> people;
   const auto add = [&](const Eigen::Vector2d& position) {
     if ((position - T_world_robot.translation()).norm() > kRobotSpace) {
-      people.push_back({position, options_.radius});
+      people.push_back({position, kRadius});
     }
   };
-  for (const auto& walk : walks_) add(AtOrLast(walk, seconds / kTimeStep));
-  for (size_t k = 0; k != stands_.size(); ++k) {
-    add(AtOrLast(stands_[k], seconds / options_.standing_time + shifts_[k]));
+  for (const auto& walk : walks) add(AtOrLast(walk, seconds / kTimeStep));
+  for (size_t k = 0; k != stands.size(); ++k) {
+    add(AtOrLast(stands[k], seconds / kStandingTime + shifts[k]));
   }
   return people;
 }
@@ -112,13 +98,11 @@ absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
                                    const double duration, const uint32_t seed) {
   CHECK_EQ(Validate(options), "");
   People people;
-  people.options_ = options;
   RandomNumbers random(seed, RandomStream::kPeople);
   for (int k = 0; k != options.num_walking; ++k) {
-    absl::StatusOr<Places> walk =
-        Walk(plan, options.walking_speed, duration, &random);
+    absl::StatusOr<Places> walk = Walk(plan, duration, &random);
     if (!walk.ok()) return walk.status();
-    people.walks_.push_back(*std::move(walk));
+    people.walks.push_back(*std::move(walk));
   }
   if (options.num_standing == 0) return people;
   const Places room = FindRoom(plan);
@@ -126,10 +110,10 @@ absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
     return absl::InvalidArgumentError("the floor plan has no room for people");
   }
   const int num_stands =
-      static_cast<int>(std::ceil(duration / options.standing_time)) + 1;
+      static_cast<int>(std::ceil(duration / People::kStandingTime)) + 1;
   for (int k = 0; k != options.num_standing; ++k) {
-    people.shifts_.push_back(random.Uniform(0., 1.));
-    people.stands_.push_back(DrawPlaces(room, num_stands, &random));
+    people.shifts.push_back(random.Uniform(0., 1.));
+    people.stands.push_back(DrawPlaces(room, num_stands, &random));
   }
   return people;
 }

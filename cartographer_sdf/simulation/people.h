@@ -22,10 +22,6 @@ namespace cartographer_sdf {
 struct PeopleOptions {
   int num_walking = 0;
   int num_standing = 0;
-  double radius = 0.2;         // [m]
-  double walking_speed = 1.2;  // [m/s]
-  // How long one stands in a place [s].
-  double standing_time = 120.;
 };
 
 [[nodiscard]] std::string Validate(const PeopleOptions& options);
@@ -36,30 +32,26 @@ struct Person {
   double radius = 0.;
 };
 
-class People {
- public:
-  // Nobody.
-  People() = default;
+// Nobody, as they are made.
+struct People {
+  static constexpr double kRadius = 0.2;        // of each [m]
+  static constexpr double kWalkingSpeed = 1.2;  // [m/s]
+  // How long one stands in a place [s].
+  static constexpr double kStandingTime = 120.;
+  // Between the centres of robot and person [m].
+  static constexpr double kRobotSpace = 0.6;
+
+  // For each who walks, the places every kTimeStep; for each who stands, those
+  // of each kStandingTime, shifted by a time of one's own.
+  static constexpr double kTimeStep = 0.1;  // [s]
+  std::vector<std::vector<Eigen::Vector2d>> walks;
+  std::vector<std::vector<Eigen::Vector2d>> stands;
+  std::vector<double> shifts;
 
   // All who are farther than `kRobotSpace` from the robot; the others have
   // stepped aside. Times beyond the duration: as at its end.
   [[nodiscard]] std::vector<Person> At(double seconds,
                                        const Rigid2& T_world_robot) const;
-
-  // Between the centres of robot and person [m].
-  static constexpr double kRobotSpace = 0.6;
-
- private:
-  friend absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
-                                            const PeopleOptions& options,
-                                            double duration, uint32_t seed);
-
-  PeopleOptions options_;
-  // For each who walks, the places every kTimeStep; for each who stands, those
-  // of each standing_time, shifted by a time of one's own.
-  std::vector<std::vector<Eigen::Vector2d>> walks_;
-  std::vector<std::vector<Eigen::Vector2d>> stands_;
-  std::vector<double> shifts_;
 };
 
 // For `duration` seconds; the same for the same arguments. An error where the

@@ -8,18 +8,16 @@
 #ifndef CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_
 #define CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
-#include "cartographer_sdf/grid/scan_grid.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pbstream/point_cloud.h"
-#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/simulation/drift.h"
 #include "cartographer_sdf/simulation/drive.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
@@ -28,27 +26,15 @@
 
 namespace cartographer_sdf {
 
-struct LocalSlamOptions {
-  // A submap holds twice as many scans, and shares half of them with the next.
-  int num_range_data = 60;
-  // A scan becomes a node when the robot has moved or turned this much since
-  // the last one [m, rad].
-  double node_distance = 0.2;
-  double node_rotation = 10. * M_PI / 180.;
-  // Side of the squares of which a node keeps one point each [m].
-  double voxel_size = 0.05;
-};
-
 struct SimulationOptions {
   DriveOptions drive;
   LidarOptions lidar;
   PeopleOptions people;
   DriftOptions drift;
-  LocalSlamOptions local_slam;
-  ScanGridOptions grid;
+  // A submap holds twice as many scans, and shares half of them with the next.
+  int num_range_data = 60;
 };
 
-[[nodiscard]] std::string Validate(const LocalSlamOptions& options);
 [[nodiscard]] std::string Validate(const SimulationOptions& options);
 
 // Time: as Node::time. Gravity alignment is the identity everywhere, so node,
@@ -92,13 +78,10 @@ struct SimulatedMap {
     const FloorPlan& plan, const SimulationOptions& options, uint32_t seed,
     const ProgressCallback& on_progress = {});
 
-// The constraints of local SLAM: each node to the submaps it was inserted in.
-[[nodiscard]] std::vector<Constraint> IntraSubmapConstraints(
-    const SimulatedMap& map);
-
-// Writes the map with its drifted poses as a .pbstream that Cartographer loads,
-// and the truth as kind,trajectory,index,x,y,yaw: poses of submaps and nodes in
-// the world. Either file is written whole or not at all.
+// Writes the map with its drifted poses and the constraints of local SLAM, each
+// node to the submaps it was inserted in, as a .pbstream that Cartographer
+// loads, and the truth as kind,trajectory,index,x,y,yaw: poses of submaps and
+// nodes in the world. Either file is written whole or not at all.
 [[nodiscard]] absl::Status WriteSimulatedMap(const SimulatedMap& map,
                                              const std::string& map_path,
                                              const std::string& truth_path);

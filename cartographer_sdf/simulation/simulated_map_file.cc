@@ -4,11 +4,7 @@
 // A .pbstream that Cartographer loads: header, pose graph, options, submaps,
 // nodes, odometry, in this order. Its readers insist on the first three.
 
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -19,12 +15,17 @@
 #include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
+#include "cartographer_sdf/simulation/truth.h"
 
 namespace cartographer_sdf {
 namespace {
 
 constexpr int kTrajectory = 0;
 constexpr int kFormatVersion = 2;
+
+// Of the host's 2D defaults, TRAJECTORY_BUILDER and POSE_GRAPH.
+constexpr double kIntraTranslationWeight = 5e2;
+constexpr double kIntraRotationWeight = 1.6e3;
 
 // Of the host's SensorId: RANGE and ODOMETRY.
 constexpr int kRangeSensor = 0;
@@ -39,14 +40,17 @@ void SetId(const int index, proto::Id* const id) {
 proto::SerializedData PoseGraphRecord(const SimulatedMap& map) {
   proto::SerializedData record;
   proto::PoseGraph* const pose_graph = record.mutable_pose_graph();
-  for (const Constraint& constraint : IntraSubmapConstraints(map)) {
-    proto::Constraint* const stored = pose_graph->add_constraint();
-    SetId(constraint.submap.index, stored->mutable_submap_id());
-    SetId(constraint.node.index, stored->mutable_node_id());
-    *stored->mutable_relative_pose() =
-        ToProto(Embed3D(constraint.T_submap_node));
-    stored->set_translation_weight(constraint.translation_weight);
-    stored->set_rotation_weight(constraint.rotation_weight);
+  for (size_t k = 0; k != map.submaps.size(); ++k) {
+    const SimulatedSubmap& submap = map.submaps[k];
+    for (int n = submap.first_node; n != submap.end_node; ++n) {
+      proto::Constraint* const constraint = pose_graph->add_constraint();
+      SetId(static_cast<int>(k), constraint->mutable_submap_id());
+      SetId(n, constraint->mutable_node_id());
+      *constraint->mutable_relative_pose() = ToProto(
+          Embed3D(submap.T_local_submap.Inverse() * map.nodes[n].T_local_node));
+      constraint->set_translation_weight(kIntraTranslationWeight);
+      constraint->set_rotation_weight(kIntraRotationWeight);
+    }
   }
   proto::Trajectory* const trajectory = pose_graph->add_trajectory();
   trajectory->set_trajectory_id(kTrajectory);
@@ -134,36 +138,17 @@ absl::Status WriteRecords(const SimulatedMap& map, RecordWriter* const writer) {
   return status;
 }
 
-std::string TruthLine(const char* const kind, const size_t index,
-                      const Rigid2& T_world) {
-  char line[160];
-  std::snprintf(line, sizeof(line), "%s,%d,%zu,%.9f,%.9f,%.9f\n", kind,
-                kTrajectory, index, T_world.translation().x(),
-                T_world.translation().y(), T_world.rotation());
-  return line;
-}
-
-std::string TruthTable(const SimulatedMap& map) {
-  std::string table = "kind,trajectory,index,x,y,yaw\n";
+Truth TruthOf(const SimulatedMap& map) {
+  Truth truth;
   for (size_t k = 0; k != map.submaps.size(); ++k) {
-    table += TruthLine("submap", k, map.submaps[k].T_world_submap);
+    truth.T_world_submap[{kTrajectory, static_cast<int>(k)}] =
+        map.submaps[k].T_world_submap;
   }
   for (size_t k = 0; k != map.nodes.size(); ++k) {
-    table += TruthLine("node", k, map.nodes[k].T_world_node);
+    truth.T_world_tracking[{kTrajectory, static_cast<int>(k)}] =
+        map.nodes[k].T_world_node;
   }
-  return table;
-}
-
-absl::Status WriteText(const std::string& text, const std::string& path) {
-  const std::string temporary_path = path + ".partial";
-  std::ofstream file(temporary_path, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary_path, path, error);
-  if (file && !error) return absl::OkStatus();
-  std::filesystem::remove(temporary_path, error);
-  return absl::UnavailableError(absl::StrCat("cannot write ", path));
+  return truth;
 }
 
 }  // namespace
@@ -178,7 +163,7 @@ absl::Status WriteSimulatedMap(const SimulatedMap& map,
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(map_path);
   if (!writer.ok()) return writer.status();
   absl::Status status = WriteRecords(map, &*writer);
-  if (status.ok()) status = WriteText(TruthTable(map), truth_path);
+  if (status.ok()) status = WriteTruth(truth_path, TruthOf(map));
   if (status.ok()) status = writer->Commit();
   return status;
 }

@@ -13,17 +13,14 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
+#include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/place_recognition.h"
 #include "cartographer_sdf/evaluation/precision_recall.h"
-#include "cartographer_sdf/evaluation/relations.h"
-#include "cartographer_sdf/evaluation/trajectory_error.h"
-#include "cartographer_sdf/evaluation/truth.h"
-#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/report/svg_plot.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "cartographer_sdf/tools/evaluate_random_pairs.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/measurement.h"
@@ -185,51 +182,49 @@ std::string SeriesName(const std::string& path) {
   return name;
 }
 
-// A map with the truth of its submaps.
-struct TrueMap {
-  EvaluatedMap map;
-  Truth truth;
-};
-
-// The map at --query; none where that is not given.
-absl::StatusOr<std::optional<TrueMap>> ReadQuery() {
-  if (FLAGS_query.empty()) return std::nullopt;
-  absl::StatusOr<EvaluatedMap> map =
-      ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
-  if (!map.ok()) return map.status();
-  absl::StatusOr<Truth> truth = ReadTruth(FLAGS_query_truth);
-  if (!truth.ok()) return truth.status();
-  return TrueMap{*std::move(map), *std::move(truth)};
+// Of the submaps of --input, or of them and those of --query.
+absl::StatusOr<PairTruths> PairTruthsOfFlags(const EvaluatedMap& map,
+                                             const Truth& truth) {
+  PairTruths pairs;
+  if (FLAGS_query.empty()) {
+    pairs = ComputePairTruths(map.observed, truth);
+  } else {
+    const absl::StatusOr<EvaluatedMap> query =
+        ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
+    if (!query.ok()) return query.status();
+    const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
+    if (!query_truth.ok()) return query_truth.status();
+    pairs =
+        ComputePairTruths(map.observed, truth, query->observed, *query_truth);
+  }
+  MarkPositives(FLAGS_positive_overlap, &pairs);
+  return pairs;
 }
 
 absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
                                  std::vector<Measurement>* const measurements,
                                  std::vector<NamedCurve>* const curves) {
-  const absl::StatusOr<std::optional<TrueMap>> query = ReadQuery();
-  if (!query.ok()) return query.status();
-  PairTruths pairs =
-      *query ? ComputePairTruths(map.observed, truth, (*query)->map.observed,
-                                 (*query)->truth)
-             : ComputePairTruths(map.observed, truth);
-  MarkPositives(FLAGS_positive_overlap, &pairs);
+  const absl::StatusOr<PairTruths> pairs = PairTruthsOfFlags(map, truth);
+  if (!pairs.ok()) return pairs.status();
   const std::vector<std::string> files = FilesOf(FLAGS_matches);
   std::vector<Measurement> accepted;
   const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
   for (size_t k = 0; k < files.size(); ++k) {
-    const absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(files[k]);
+    absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(files[k]);
     if (!matches.ok()) return matches.status();
-    const std::vector<AnswerLabel> labels =
-        *query ? LabelAnswers(pairs, truth, (*query)->truth, *matches)
-               : LabelAnswers(pairs, truth, *matches);
+    if (FLAGS_query.empty()) OrderByIds(&*matches);
+    const std::vector<AnswerLabel> labels = LabelAnswers(*pairs, *matches);
+    const MatchScore score = ScoreAnswers(*pairs, labels);
+    const PrecisionRecallCurve curve =
+        JudgeAnswers(labels, score.num_positives, AnswerJudgement::kByPose);
     const std::string series = SeriesName(files[k]);
     const std::string suffix =
         files.size() == 1 ? "" : absl::StrCat(" ", series);
-    const PrecisionRecallCurve curve = JudgeAnswers(pairs, labels);
-    measurements->push_back(MeasureMatches(absl::StrCat("matches", suffix),
-                                           ScoreAnswers(pairs, labels), curve));
+    measurements->push_back(
+        MeasureMatches(absl::StrCat("matches", suffix), score, curve));
     accepted.push_back(
         MeasureAccepted(absl::StrCat("accepted", suffix),
-                        ScorePlaceRecognition(pairs, labels, *matches)));
+                        ScorePlaceRecognition(*pairs, labels, *matches)));
     curves->push_back({series, curve, /*is_variant=*/false});
     if (label_files.empty()) continue;
     const absl::Status status = WriteAnswerLabels(label_files[k], labels);
@@ -284,38 +279,30 @@ absl::Status WriteResults(const std::vector<Measurement>& measurements,
 }
 
 absl::Status CheckFlags() {
-  if (FLAGS_relations.empty() && FLAGS_truth.empty()) {
-    return UsageError("evaluate needs --relations or --truth");
-  }
-  if (!FLAGS_matches.empty() && FLAGS_truth.empty()) {
-    return UsageError("--matches needs --truth");
-  }
-  if (FLAGS_query.empty() != FLAGS_query_truth.empty()) {
-    return UsageError("--query and --query_truth need each other");
-  }
-  if (!FLAGS_query.empty() && FLAGS_matches.empty()) {
-    return UsageError("--query needs --matches");
-  }
-  if (!FLAGS_labels.empty() &&
-      FilesOf(FLAGS_labels).size() != FilesOf(FLAGS_matches).size()) {
-    return UsageError("--labels needs --matches, a file for each");
-  }
-  if (WantsRandomPairs() && FLAGS_truth.empty()) {
-    return UsageError("--random_pairs needs --truth");
-  }
-  if (!FLAGS_free_space_plot.empty() && !WantsRandomPairs()) {
-    return UsageError("--free_space_plot needs --random_pairs");
-  }
-  if ((!FLAGS_curves.empty() || !FLAGS_plot.empty()) && FLAGS_matches.empty() &&
-      !WantsRandomPairs()) {
-    return UsageError("--curves and --plot need --matches or --random_pairs");
-  }
-  if (!(FLAGS_seconds_per_scan > 0.) ||
-      !std::isfinite(FLAGS_seconds_per_scan)) {
-    return UsageError("--seconds_per_scan must be positive");
-  }
-  if (!(FLAGS_positive_overlap > 0. && FLAGS_positive_overlap <= 1.)) {
-    return UsageError("--positive_overlap must lie above 0 and not above 1");
+  const bool has_truth = !FLAGS_truth.empty();
+  const bool has_matches = !FLAGS_matches.empty();
+  const std::pair<bool, const char*> needs[] = {
+      {has_truth || !FLAGS_relations.empty(),
+       "evaluate needs --relations or --truth"},
+      {has_truth || !has_matches, "--matches needs --truth"},
+      {FLAGS_query.empty() == FLAGS_query_truth.empty(),
+       "--query and --query_truth need each other"},
+      {has_matches || FLAGS_query.empty(), "--query needs --matches"},
+      {FLAGS_labels.empty() ||
+           FilesOf(FLAGS_labels).size() == FilesOf(FLAGS_matches).size(),
+       "--labels needs --matches, a file for each"},
+      {has_truth || !WantsRandomPairs(), "--random_pairs needs --truth"},
+      {FLAGS_free_space_plot.empty() || WantsRandomPairs(),
+       "--free_space_plot needs --random_pairs"},
+      {(FLAGS_curves.empty() && FLAGS_plot.empty()) || has_matches ||
+           WantsRandomPairs(),
+       "--curves and --plot need --matches or --random_pairs"},
+      {FLAGS_seconds_per_scan > 0. && std::isfinite(FLAGS_seconds_per_scan),
+       "--seconds_per_scan must be positive"},
+      {FLAGS_positive_overlap > 0. && FLAGS_positive_overlap <= 1.,
+       "--positive_overlap must lie above 0 and not above 1"}};
+  for (const auto& [is_met, sentence] : needs) {
+    if (!is_met) return UsageError(sentence);
   }
   return CheckRandomPairFlags();
 }

@@ -3,10 +3,7 @@
 
 #include "cartographer_sdf/tools/evaluate_random_pairs.h"
 
-#include <cmath>
 #include <map>
-#include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -67,14 +64,32 @@ absl::StatusOr<std::vector<double>> ParseNumbers(const std::string& flag,
   return numbers;
 }
 
-absl::StatusOr<std::vector<double>> MinOverlapsOfFlags() {
-  return ParseNumbers("min_overlaps", FLAGS_min_overlaps, 1e-6, 1.);
-}
-absl::StatusOr<std::vector<double>> MaxClearancesOfFlags() {
-  return ParseNumbers("max_clearances", FLAGS_max_clearances, 0., 1000.);
-}
-std::vector<std::string> MethodsOfFlags() {
-  return absl::StrSplit(FLAGS_methods, ',', absl::SkipEmpty());
+struct RandomPairFlags {
+  std::vector<std::string> methods;
+  std::vector<double> min_overlaps;
+  std::vector<double> max_clearances;
+};
+
+absl::StatusOr<RandomPairFlags> ParseFlags() {
+  if (FLAGS_random_pairs < 0 || FLAGS_random_pairs > 10000000) {
+    return UsageError("--random_pairs must be from 0 to 10000000");
+  }
+  if (FLAGS_min_index_gap < 1) {
+    return UsageError("--min_index_gap must be positive");
+  }
+  const absl::StatusOr<std::vector<double>> min_overlaps =
+      ParseNumbers("min_overlaps", FLAGS_min_overlaps, 1e-6, 1.);
+  if (!min_overlaps.ok()) return min_overlaps.status();
+  if (min_overlaps->empty()) {
+    return UsageError("--min_overlaps needs a number");
+  }
+  const std::vector<std::string> methods =
+      absl::StrSplit(FLAGS_methods, ',', absl::SkipEmpty());
+  if (methods.empty()) return UsageError("--methods needs a method");
+  const absl::StatusOr<std::vector<double>> max_clearances =
+      ParseNumbers("max_clearances", FLAGS_max_clearances, 0., 1000.);
+  if (!max_clearances.ok()) return max_clearances.status();
+  return RandomPairFlags{methods, *min_overlaps, *max_clearances};
 }
 
 struct RandomPairData {
@@ -144,19 +159,18 @@ struct Series {
 };
 
 absl::StatusOr<std::vector<Series>> AnswerByMethods(
-    const Truth& truth, const RandomPairData& data, const Executor& executor,
-    StageProgress* const progress) {
-  const std::vector<double> max_clearances = *MaxClearancesOfFlags();
+    const RandomPairFlags& flags, const RandomPairData& data,
+    const Executor& executor, StageProgress* const progress) {
   std::vector<Series> series;
-  for (const std::string& method : MethodsOfFlags()) {
+  for (const std::string& method : flags.methods) {
     const absl::StatusOr<std::vector<std::vector<MatchRow>>> answers =
-        Answer(method, data, max_clearances, executor, progress);
+        Answer(method, data, flags.max_clearances, executor, progress);
     if (!answers.ok()) return answers.status();
     for (size_t v = 0; v < answers->size(); ++v) {
-      series.push_back(
-          {v == 0 ? method
-                  : absl::StrFormat("%s %g m", method, max_clearances[v - 1]),
-           v > 0, LabelAnswers(data.truths, truth, (*answers)[v])});
+      series.push_back({v == 0 ? method
+                               : absl::StrFormat("%s %g m", method,
+                                                 flags.max_clearances[v - 1]),
+                        v > 0, LabelAnswers(data.truths, (*answers)[v])});
     }
   }
   return series;
@@ -185,28 +199,13 @@ Measurement Measure(const std::string& series, const double min_overlap,
 
 bool WantsRandomPairs() { return FLAGS_random_pairs != 0; }
 
-absl::Status CheckRandomPairFlags() {
-  if (FLAGS_random_pairs < 0 || FLAGS_random_pairs > 10000000) {
-    return UsageError("--random_pairs must be from 0 to 10000000");
-  }
-  if (FLAGS_min_index_gap < 1) {
-    return UsageError("--min_index_gap must be positive");
-  }
-  const absl::StatusOr<std::vector<double>> min_overlaps = MinOverlapsOfFlags();
-  if (!min_overlaps.ok()) return min_overlaps.status();
-  if (min_overlaps->empty()) {
-    return UsageError("--min_overlaps needs a number");
-  }
-  if (MethodsOfFlags().empty()) {
-    return UsageError("--methods needs a method");
-  }
-  return MaxClearancesOfFlags().status();
-}
+absl::Status CheckRandomPairFlags() { return ParseFlags().status(); }
 
 absl::Status MeasureRandomPairs(const Truth& truth,
                                 std::vector<Measurement>* const measurements,
                                 std::vector<NamedCurve>* const curves) {
-  const std::vector<double> min_overlaps = *MinOverlapsOfFlags();
+  const absl::StatusOr<RandomPairFlags> flags = ParseFlags();
+  if (!flags.ok()) return flags.status();
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
   const Executor executor = MakeExecutor(*num_threads);
@@ -215,9 +214,9 @@ absl::Status MeasureRandomPairs(const Truth& truth,
       ReadData(truth, progress.Begin("read"));
   if (!data.ok()) return data.status();
   const absl::StatusOr<std::vector<Series>> series =
-      AnswerByMethods(truth, *data, executor, &progress);
+      AnswerByMethods(*flags, *data, executor, &progress);
   if (!series.ok()) return series.status();
-  for (const double min_overlap : min_overlaps) {
+  for (const double min_overlap : flags->min_overlaps) {
     for (const auto& [name, is_variant, labels] : *series) {
       measurements->push_back(Measure(name, min_overlap, *data, labels));
     }
@@ -225,8 +224,8 @@ absl::Status MeasureRandomPairs(const Truth& truth,
   for (const auto& [name, is_variant, labels] : *series) {
     curves->push_back(
         {name,
-         JudgePairs(data->truths, data->pairs, labels, min_overlaps.front(),
-                    AnswerJudgement::kByPair),
+         JudgePairs(data->truths, data->pairs, labels,
+                    flags->min_overlaps.front(), AnswerJudgement::kByPair),
          is_variant});
   }
   return absl::OkStatus();

@@ -11,7 +11,7 @@
 
 #include "absl/status/status.h"
 #include "cartographer_sdf/evaluation/precision_recall.h"
-#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "cartographer_sdf/tools/measurement.h"
 
 namespace cartographer_sdf {

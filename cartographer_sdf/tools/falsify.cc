@@ -16,7 +16,6 @@
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/tools/flags.h"
-#include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 

@@ -67,14 +67,10 @@ std::vector<std::string> ConfigurationDirectories() {
 }
 
 absl::StatusOr<Options> LoadOptionsOfFlags() {
-  return LoadOptionsOfFlags(FLAGS_configuration_basename);
-}
-
-absl::StatusOr<Options> LoadOptionsOfFlags(const std::string& basename) {
   if (absl::Status status = CheckConfigurationDirectories(); !status.ok()) {
     return status;
   }
-  return LoadOptions(ConfigurationDirectories(), basename);
+  return LoadOptions(ConfigurationDirectories(), FLAGS_configuration_basename);
 }
 
 absl::Status CheckConfigurationDirectories() {

@@ -35,11 +35,8 @@ namespace cartographer_sdf {
 // An error where a directory of --configuration_directory does not exist.
 [[nodiscard]] absl::Status CheckConfigurationDirectories();
 
-// As of --configuration_directory and --configuration_basename, or of another
-// file.
+// As of --configuration_directory and --configuration_basename.
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
-[[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags(
-    const std::string& basename);
 
 // As of --report.
 [[nodiscard]] ReportRequest ReportRequestOfFlags(const Options& options);

@@ -9,7 +9,8 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "cartographer_sdf/evaluation/comparison_options.h"
+#include "cartographer_sdf/config/options.h"
+#include "cartographer_sdf/evaluation/shape_context.h"
 
 namespace cartographer_sdf {
 

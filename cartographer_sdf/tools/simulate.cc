@@ -1,35 +1,101 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/tools/simulate.h"
-
+#include <cmath>
+#include <iostream>
 #include <string>
 
-#include "absl/status/statusor.h"
-#include "cartographer_sdf/simulation/floor_plan.h"
+#include "cartographer_sdf/simulation/office.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
+#include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/progress.h"
+#include "cartographer_sdf/tools/subcommand.h"
+#include "gflags/gflags.h"
+
+DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
+DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
+DEFINE_double(plan_width, 40., "Of the office that is invented [m].");
+DEFINE_double(plan_height, 30., "Of the office that is invented [m].");
+DEFINE_double(plan_wall_thickness, 0.15, "Of the office that is invented [m].");
+DEFINE_double(plan_furniture, 0.14,
+              "Pieces per square metre of room of the office that is "
+              "invented.");
+DEFINE_double(glass_fronts, 0.,
+              "Fraction of the rooms of the invented office whose wall to the "
+              "corridor is of glass.");
+DEFINE_double(glass_echo, 0.3, "Fraction of the beams that glass returns.");
+DEFINE_double(open_tables, 0.,
+              "Fraction of the tables of the invented office that are seen as "
+              "four legs.");
+DEFINE_int32(walking_people, 0, "Who walk through the building all the time.");
+DEFINE_int32(standing_people, 0,
+             "Who stand somewhere for two minutes, and then elsewhere.");
+DEFINE_double(lidar_range, 20., "Echoes from farther away are lost [m].");
+DEFINE_double(lidar_field_of_view, 270., "About the way ahead [deg].");
+DEFINE_double(length, 360., "How far the robot drives [m].");
+DEFINE_uint32(seed, 1,
+              "Of what is random: in simulate the drive, its drift and the "
+              "noise, so that two sessions in one building differ in it "
+              "alone.");
 
 namespace cartographer_sdf {
+namespace {
 
-absl::Status RunSimulate(const SimulateArguments& arguments,
-                         const ProgressCallback& on_progress) {
-  if (const std::string error = Validate(arguments.office);
-      !arguments.plan_path && !error.empty()) {
+// That of --map, or an invented office.
+absl::StatusOr<FloorPlan> PlanOfFlags() {
+  if (!FLAGS_map.empty()) return ReadPgm(FLAGS_map, FLAGS_map_resolution);
+  OfficeOptions office;
+  office.width = FLAGS_plan_width;
+  office.height = FLAGS_plan_height;
+  office.wall_thickness = FLAGS_plan_wall_thickness;
+  office.furniture_density = FLAGS_plan_furniture;
+  office.glass_fronts = FLAGS_glass_fronts;
+  office.open_tables = FLAGS_open_tables;
+  if (const std::string error = Validate(office); !error.empty()) {
     return absl::InvalidArgumentError(error);
   }
+  return MakeOffice(office, FLAGS_plan_seed);
+}
+
+absl::Status WriteMapOfFlags() {
   SimulationOptions options;
-  options.drive.length = arguments.length;
-  options.lidar = arguments.lidar;
-  options.people = arguments.people;
-  const absl::StatusOr<FloorPlan> plan =
-      arguments.plan_path
-          ? ReadPgm(*arguments.plan_path, arguments.plan_resolution)
-          : MakeOffice(arguments.office, arguments.plan_seed);
+  options.drive.length = FLAGS_length;
+  options.lidar.glass_echo = FLAGS_glass_echo;
+  options.lidar.max_range = FLAGS_lidar_range;
+  options.lidar.field_of_view = FLAGS_lidar_field_of_view * M_PI / 180.;
+  options.people.num_walking = FLAGS_walking_people;
+  options.people.num_standing = FLAGS_standing_people;
+  Progress progress("simulate");
+  const absl::StatusOr<FloorPlan> plan = PlanOfFlags();
   if (!plan.ok()) return plan.status();
   const absl::StatusOr<SimulatedMap> map =
-      Simulate(*plan, options, arguments.drive_seed, on_progress);
+      Simulate(*plan, options, FLAGS_seed, progress.Callback());
   if (!map.ok()) return map.status();
-  return WriteSimulatedMap(*map, arguments.output_path, arguments.truth_path);
+  return WriteSimulatedMap(*map, FLAGS_output, FLAGS_truth);
+}
+
+absl::Status RunSimulate() {
+  const absl::Status status = WriteMapOfFlags();
+  if (status.ok()) std::cout << FLAGS_output << "\n" << FLAGS_truth << "\n";
+  return status;
+}
+
+}  // namespace
+
+Subcommand SimulateSubcommand() {
+  return Subcommand{
+      "simulate",
+      "make a map with unclosed loops, and its truth",
+      "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N]",
+      "Drives a robot with a ray-cast lidar and drifting odometry through a "
+      "building and writes what Cartographer would have saved without loop "
+      "closing, and the true poses of its submaps and nodes.",
+      {"output", "truth"},
+      {"map", "map_resolution", "plan_seed", "plan_width", "plan_height",
+       "plan_wall_thickness", "plan_furniture", "glass_fronts", "glass_echo",
+       "open_tables", "walking_people", "standing_people", "lidar_range",
+       "lidar_field_of_view", "length", "seed"},
+      &RunSimulate};
 }
 
 }  // namespace cartographer_sdf

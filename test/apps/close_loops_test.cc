@@ -10,14 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/relations.h"
-#include "cartographer_sdf/evaluation/trajectory_error.h"
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/simulation/office.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
@@ -295,8 +294,8 @@ TEST(RealMapTest, ClosesTheLoopsOfIntel) {
     row.T_reference_query = outcome.match.pair.T_reference_query;
     rows.push_back(row);
   }
-  const MatchScore score =
-      ScoreMatches(ComputePairTruths(observed, *truth), *truth, rows);
+  const PairTruths pairs = ComputePairTruths(observed, *truth);
+  const MatchScore score = ScoreAnswers(pairs, LabelAnswers(pairs, rows));
   EXPECT_EQ(score.num_wrong, 0);
   // 1388 were measured.
   EXPECT_NEAR(score.num_answers, 1388, 14);

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/temporary_directory.h"

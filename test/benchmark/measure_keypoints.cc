@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "cartographer_sdf/config/options.h"
-#include "cartographer_sdf/evaluation/keypoint_repeatability.h"
 #include "cartographer_sdf/evaluation/match_score.h"
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/report/feature_pictures.h"
+#include "cartographer_sdf/simulation/truth.h"
+#include "test/testing/keypoint_repeatability.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -31,7 +31,7 @@ namespace {
 constexpr double kPositivePairOverlap = 0.5;
 
 void Print(const std::string& subject,
-           const KeypointRepeatability::OfKind& count) {
+           const testing::KeypointRepeatability::OfKind& count) {
   const std::string line = "keypoints" + subject;
   std::cout << line << ",judged," << count.num_judged << "\n"
             << line << ",found," << count.num_found << "\n"
@@ -84,7 +84,7 @@ absl::Status Measure(const std::string& map_path, const std::string& truth_path,
     const absl::Status status = Draw(drawn->second, picture_path);
     if (!status.ok()) return status;
   }
-  KeypointRepeatability repeatability;
+  testing::KeypointRepeatability repeatability;
   int num_pairs = 0;
   for (const auto& [ids, pair] : ComputePairTruths(observed, *truth)) {
     const auto reference = places.find(ids.first);
@@ -94,10 +94,11 @@ absl::Status Measure(const std::string& map_path, const std::string& truth_path,
       continue;
     }
     ++num_pairs;
-    AddKeypointRepeatability(reference->second, query->second,
-                             truth->T_world_submap.at(ids.first).Inverse() *
-                                 truth->T_world_submap.at(ids.second),
-                             &repeatability);
+    testing::AddKeypointRepeatability(
+        reference->second, query->second,
+        truth->T_world_submap.at(ids.first).Inverse() *
+            truth->T_world_submap.at(ids.second),
+        &repeatability);
   }
   std::cout << "subject,quantity,value\n"
             << "keypoints,submaps," << places.size() << "\n"

@@ -3,8 +3,9 @@
 
 #include "cartographer_sdf/config/lua_dictionary.h"
 
+#include <cmath>
+#include <map>
 #include <string>
-#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -17,8 +18,9 @@ using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using ::testing::SizeIs;
+using ::testing::Pair;
 using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 class LuaDictionaryTest : public ::testing::Test {
  protected:
@@ -26,10 +28,11 @@ class LuaDictionaryTest : public ::testing::Test {
     directory_.Write("main.lua", code);
     return LoadLuaDictionary({directory_.path()}, "main.lua", "TABLE");
   }
-  LuaTable LoadTable(const std::string& code) {
+  std::map<std::string, LuaValue> LoadValues(const std::string& code) {
     const absl::StatusOr<LuaDictionary> dictionary = Load(code);
     EXPECT_TRUE(dictionary.ok()) << dictionary.status();
-    return dictionary.ok() ? dictionary->table : LuaTable();
+    return dictionary.ok() ? dictionary->values
+                           : std::map<std::string, LuaValue>();
   }
   // Checks what all errors share; returns what follows the path of the file.
   std::string LoadError(const std::string& code) {
@@ -48,52 +51,35 @@ class LuaDictionaryTest : public ::testing::Test {
   testing::TemporaryDirectory directory_;
 };
 
-double Number(const LuaTable& table, const std::string& key) {
-  const LuaValue* const value = table.Find(key);
-  return value == nullptr ? -1e9 : std::get<double>(*value);
-}
-
 TEST_F(LuaDictionaryTest, ReadsAllTypes) {
-  const LuaTable table = LoadTable(R"(
+  const std::map<std::string, LuaValue> values = LoadValues(R"(
       return { angle = math.rad(180.), name = "a" .. "b", yes = true,
-               nested = { deeper = { seven = 7 } }, list = {3, 4.5, 5},
-               empty = {} })");
-  EXPECT_DOUBLE_EQ(Number(table, "angle"), 3.14159265358979323846);
-  EXPECT_EQ(std::get<std::string>(*table.Find("name")), "ab");
-  EXPECT_TRUE(std::get<bool>(*table.Find("yes")));
-  const LuaTable& nested = std::get<LuaTable>(*table.Find("nested"));
-  EXPECT_EQ(Number(std::get<LuaTable>(*nested.Find("deeper")), "seven"), 7.);
-  const LuaTable& list = std::get<LuaTable>(*table.Find("list"));
-  ASSERT_THAT(list.elements, SizeIs(3));
-  EXPECT_EQ(std::get<double>(list.elements[1]), 4.5);
-  const LuaTable& empty = std::get<LuaTable>(*table.Find("empty"));
-  EXPECT_THAT(empty.elements, SizeIs(0));
-  EXPECT_THAT(empty.fields, SizeIs(0));
-  EXPECT_EQ(table.Find("nam"), nullptr);
-  EXPECT_EQ(table.Find("namee"), nullptr);
-}
-
-TEST_F(LuaDictionaryTest, SortsKeys) {
-  const LuaTable table = LoadTable("return {c = 1, a = 2, d = 3, b = 4}");
-  std::string keys;
-  for (const LuaField& field : table.fields) keys += field.key;
-  EXPECT_EQ(keys, "abcd");
+               nested = { deeper = { seven = 7 } }, empty = {} })");
+  EXPECT_THAT(values, UnorderedElementsAre(
+                          Pair("TABLE", LuaValue()),
+                          Pair("TABLE.angle", LuaValue(std::acos(-1.))),
+                          Pair("TABLE.name", LuaValue(std::string("ab"))),
+                          Pair("TABLE.yes", LuaValue(true)),
+                          Pair("TABLE.nested", LuaValue()),
+                          Pair("TABLE.nested.deeper", LuaValue()),
+                          Pair("TABLE.nested.deeper.seven", LuaValue(7.)),
+                          Pair("TABLE.empty", LuaValue())));
 }
 
 TEST_F(LuaDictionaryTest, IncludesAndOverrides) {
   directory_.Write("base.lua", "BASE = { a = 1, b = { c = 2 } } return BASE");
-  const LuaTable table =
-      LoadTable("include \"base.lua\"\nBASE.b.c = 3\nreturn BASE");
-  EXPECT_EQ(Number(table, "a"), 1.);
-  EXPECT_EQ(Number(std::get<LuaTable>(*table.Find("b")), "c"), 3.);
+  const auto values =
+      LoadValues("include \"base.lua\"\nBASE.b.c = 3\nreturn BASE");
+  EXPECT_EQ(values.at("TABLE.a"), LuaValue(1.));
+  EXPECT_EQ(values.at("TABLE.b.c"), LuaValue(3.));
 }
 
 TEST_F(LuaDictionaryTest, IncludesEachFileOnce) {
   directory_.Write("a.lua", "include 'b.lua' N = N + 1");
   directory_.Write("b.lua", "include 'a.lua' include 'main.lua' N = N + 10");
-  const LuaTable table =
-      LoadTable("N = 0 include 'a.lua' include 'a.lua' return {n = N}");
-  EXPECT_EQ(Number(table, "n"), 11.);
+  const auto values =
+      LoadValues("N = 0 include 'a.lua' include 'a.lua' return {n = N}");
+  EXPECT_EQ(values.at("TABLE.n"), LuaValue(11.));
 }
 
 TEST_F(LuaDictionaryTest, SearchesDirectoriesInTheirOrder) {
@@ -105,7 +91,7 @@ TEST_F(LuaDictionaryTest, SearchesDirectoriesInTheirOrder) {
       LoadLuaDictionary({directory_.path(), other.path()}, "x.lua", "X");
   ASSERT_TRUE(x.ok());
   EXPECT_EQ(x->path, directory_.File("x.lua"));
-  EXPECT_EQ(Number(x->table, "x"), 1.);
+  EXPECT_EQ(x->values.at("X.x"), LuaValue(1.));
   const auto y =
       LoadLuaDictionary({directory_.path(), other.path()}, "y.lua", "Y");
   ASSERT_TRUE(y.ok());
@@ -170,9 +156,9 @@ TEST_F(LuaDictionaryTest, NamesThePathOfBadValues) {
               AllOf(StartsWith("TABLE.a "), HasSubstr("boolean")));
   EXPECT_THAT(LoadError("return { a = { [2] = 1 } }"), StartsWith("TABLE.a "));
   EXPECT_THAT(LoadError("return { a = { 1, 2, b = 3 } }"),
-              StartsWith("TABLE.a mixes"));
-  EXPECT_THAT(LoadError("return { a = { 1, {0/0} } }"),
-              StartsWith("TABLE.a[2][1] "));
+              StartsWith("TABLE.a has a key that is a number"));
+  EXPECT_THAT(LoadError("return { a = { ['b.c'] = 1 } }"),
+              AllOf(StartsWith("TABLE.a.b.c "), EndsWith("without dots")));
   EXPECT_THAT(LoadError("return { ['a\\nb'] = 0/0 }"),
               StartsWith("TABLE.a b "));
 }
@@ -202,14 +188,15 @@ TEST_F(LuaDictionaryTest, LimitsMemory) {
 
 TEST_F(LuaDictionaryTest, RefusesTablesWithoutEnd) {
   EXPECT_THAT(LoadError("t = {} t.t = t return t"), HasSubstr("nested"));
-  EXPECT_THAT(LoadError("t = {} t[1] = t return t"), HasSubstr("nested"));
+  EXPECT_THAT(LoadError("t = {} t.u = {t = t} return t"), HasSubstr("nested"));
   // 2^15 tables of 15; and a long string a thousand times.
   EXPECT_THAT(LoadError("t = {} for i = 1, 15 do t = {a = t, b = t} end "
                         "return t"),
               HasSubstr("too much"));
-  EXPECT_THAT(LoadError("s = 'xxxxxxxx' for i = 1, 10 do s = s .. s end "
-                        "t = {} for i = 1, 1000 do t[i] = s end return t"),
-              HasSubstr("too much"));
+  EXPECT_THAT(
+      LoadError("s = 'xxxxxxxx' for i = 1, 10 do s = s .. s end "
+                "t = {} for i = 1, 1000 do t['k' .. i] = s end return t"),
+      HasSubstr("too much"));
 }
 
 TEST_F(LuaDictionaryTest, OffersNothingDangerous) {
@@ -239,9 +226,8 @@ TEST_F(LuaDictionaryTest, OffersNothingDangerous) {
                                  "string.find",
                                  "string.gsub",
                                  "bit32"}) {
-    EXPECT_EQ(
-        Number(LoadTable("return { n = " + name + " == nil and 1 or 0 }"), "n"),
-        1.)
+    EXPECT_EQ(LoadValues("return { n = " + name + " == nil }").at("TABLE.n"),
+              LuaValue(true))
         << name;
   }
 }

@@ -6,7 +6,6 @@
 #include <array>
 #include <fstream>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "cartographer_sdf/config/option_keys.h"
@@ -51,25 +50,30 @@ int CountDocumentedOptions(const std::string& basename) {
   return count;
 }
 
-struct LeafCounter {
-  int count = 0;
-  template <typename T>
-  void operator()(const char*, T& option) {
-    if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
-      VisitOptions(*this, option);
-    } else {
-      ++count;
-    }
+// The keys of the options, without those of the tables around them.
+class LeafLister : public OptionVisitor {
+ public:
+  std::vector<std::string> keys;
+
+ private:
+  void Visit(const char* key, double&) override { keys.emplace_back(key); }
+  void Visit(const char* key, int&) override { keys.emplace_back(key); }
+  void Visit(const char* key, bool&) override { keys.emplace_back(key); }
+  void VisitName(const char* key, const std::vector<std::string>&,
+                 int&) override {
+    keys.emplace_back(key);
   }
+  bool Enter(const char*) override { return true; }
+  void Leave(const std::string&) override {}
 };
 
 TEST(OptionsTest, EachIsInOneShippedFileAndDocumented) {
   Options options;
-  LeafCounter leaves;
+  LeafLister leaves;
   VisitOptions(leaves, options);
   const int num_for_users = CountDocumentedOptions(kBasename);
   EXPECT_EQ(num_for_users + CountDocumentedOptions("sdf_advanced_options.lua"),
-            leaves.count);
+            static_cast<int>(leaves.keys.size()));
   EXPECT_LE(num_for_users, 20);
 }
 
@@ -83,13 +87,17 @@ TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
 }
 
 // Sets the weight of one key to 1, all others to 0.
-struct OneWeight {
-  int wanted;
-  std::vector<std::string> keys;
-  void operator()(const char* const key, double& weight) {
-    weight = static_cast<int>(keys.size()) == wanted ? 1. : 0.;
+class OneWeight : public LeafLister {
+ public:
+  explicit OneWeight(const int wanted) : wanted_(wanted) {}
+
+ private:
+  void Visit(const char* const key, double& weight) override {
+    weight = static_cast<int>(keys.size()) == wanted_ ? 1. : 0.;
     keys.emplace_back(key);
   }
+
+  const int wanted_;
 };
 
 TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
@@ -104,7 +112,7 @@ TEST(OptionsTest, TermsOfTheScoreAreCalledAsTheirWeights) {
   const auto names = ScoreTermNames();
   for (int k = 0; k != kNumScoreTerms; ++k) {
     ScoreWeights weights;
-    OneWeight visit{k, {}};
+    OneWeight visit(k);
     VisitOptions(visit, weights);
     ASSERT_EQ(visit.keys.size(), kNumScoreTerms + 1u);
     EXPECT_EQ(names[k], visit.keys[k]);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/evaluation/keypoint_repeatability.h"
+#include "test/testing/keypoint_repeatability.h"
 
 #include "gtest/gtest.h"
 #include "test/testing/ascii_grid.h"
@@ -10,7 +10,7 @@
 namespace cartographer_sdf::keypoint_repeatability_test {
 namespace {
 
-using OfKind = KeypointRepeatability::OfKind;
+using OfKind = testing::KeypointRepeatability::OfKind;
 
 // A room with two pillars, seen from where it is turned by `angle`.
 Place RoomFrom(const double angle) {
@@ -25,8 +25,8 @@ Place RoomFrom(const double angle) {
 
 TEST(KeypointRepeatabilityTest, APlaceHasAllOfItself) {
   const Place place = RoomFrom(0.);
-  KeypointRepeatability repeatability;
-  AddKeypointRepeatability(place, place, Rigid2(), &repeatability);
+  testing::KeypointRepeatability repeatability;
+  testing::AddKeypointRepeatability(place, place, Rigid2(), &repeatability);
   const OfKind total = repeatability.Total();
   // Both ways.
   EXPECT_EQ(total.num_judged,
@@ -39,11 +39,12 @@ TEST(KeypointRepeatabilityTest, APlaceHasAllOfItself) {
 
 TEST(KeypointRepeatabilityTest, TurnsAndWrongPosesAreTold) {
   const Place place = RoomFrom(0.), turned = RoomFrom(0.5);
-  KeypointRepeatability right, wrong;
+  testing::KeypointRepeatability right, wrong;
   // Rasterise() takes the pose of the submap in the world.
   const Rigid2 T_place_turned(0., 0., 0.5);
-  AddKeypointRepeatability(place, turned, T_place_turned, &right);
-  AddKeypointRepeatability(place, turned, Rigid2(0.5, 0.5, -0.5), &wrong);
+  testing::AddKeypointRepeatability(place, turned, T_place_turned, &right);
+  testing::AddKeypointRepeatability(place, turned, Rigid2(0.5, 0.5, -0.5),
+                                    &wrong);
   EXPECT_GT(right.Total().num_found, 0.7 * right.Total().num_judged);
   EXPECT_LT(wrong.Total().num_found, 0.5 * wrong.Total().num_judged);
 }

@@ -63,9 +63,15 @@ MatchRow Answer(const int reference, const int query, const double score,
   return match;
 }
 
+// Of matches of one map.
+MatchScore ScoreMatches(const PairTruths& pairs,
+                        std::vector<MatchRow> matches) {
+  OrderByIds(&matches);
+  return ScoreAnswers(pairs, LabelAnswers(pairs, matches));
+}
+
 MatchScore Score(const std::vector<MatchRow>& matches) {
-  return ScoreMatches(ComputePairTruths(RowOfRectangles(), Row()), Row(),
-                      matches);
+  return ScoreMatches(ComputePairTruths(RowOfRectangles(), Row()), matches);
 }
 
 const Rigid2 kNear(0.75, 0., 0.);
@@ -76,12 +82,13 @@ TEST(ComputePairTruthsTest, MeasuresTheCommonArea) {
   EXPECT_EQ(pairs.size(), 10u);
   const PairTruth& pair = pairs.at({{0, 0}, {0, 3}});
   EXPECT_NEAR(pair.overlap, 0.75, 1e-12);
-  EXPECT_NEAR(pair.centre_world.x(), 2.5, 1e-12);
-  EXPECT_NEAR(pair.centre_world.y(), 11., 1e-12);
+  EXPECT_NEAR(pair.T_reference_query.translation().x(), 1., 1e-12);
+  EXPECT_NEAR(pair.centre_query.x(), 2.5 - kPositions[1], 1e-12);
+  EXPECT_NEAR(pair.centre_query.y(), 1., 1e-12);
   EXPECT_NEAR(pairs.at({{0, 0}, {0, 6}}).overlap, 0.5, 1e-12);
   // Nothing in common: the centre of the query.
   EXPECT_EQ(pairs.at({{0, 0}, {0, 9}}).overlap, 0.);
-  EXPECT_NEAR(pairs.at({{0, 0}, {0, 9}}).centre_world.x(), 6., 1e-12);
+  EXPECT_NEAR(pairs.at({{0, 0}, {0, 9}}).centre_query.x(), 2., 1e-12);
 }
 
 TEST(ComputePairTruthsTest, IsAFractionOfTheSmallerArea) {
@@ -94,7 +101,8 @@ TEST(ComputePairTruthsTest, IsAFractionOfTheSmallerArea) {
   truth.T_world_submap[{0, 3}] = Rigid2(5., 4., M_PI_2);
   const PairTruths pairs = ComputePairTruths(submaps, truth);
   EXPECT_NEAR(pairs.at({{0, 0}, {0, 3}}).overlap, 0.5, 1e-12);
-  EXPECT_NEAR(pairs.at({{0, 0}, {0, 3}}).centre_world.y(), 4.5, 1e-12);
+  // Of the two metres that it is long, the first lies in the other.
+  EXPECT_NEAR(pairs.at({{0, 0}, {0, 3}}).centre_query.x(), 0.5, 1e-12);
 }
 
 TEST(ComputePairTruthsTest, AgreesWithSetsOfCellsOnRandomPoints) {
@@ -129,7 +137,10 @@ TEST(ComputePairTruthsTest, AgreesWithSetsOfCellsOnRandomPoints) {
                 num_common / static_cast<double>(
                                  std::min(cells[0].size(), cells[1].size())),
                 1e-12);
-    EXPECT_LT((pair.centre_world - sum / num_common).norm(), 1e-9);
+    EXPECT_LT(
+        (truth.T_world_submap.at({1, 0}) * pair.centre_query - sum / num_common)
+            .norm(),
+        1e-9);
   }
 }
 
@@ -175,10 +186,11 @@ TEST(LabelAnswersTest, SaysWhatTheTruthSays) {
   reversed.T_reference_query = reversed.T_reference_query.Inverse();
   MatchRow unknown = Answer(0, 3, 5.);
   unknown.query = {7, 7};
+  std::vector<MatchRow> matches = {Answer(3, 9, 2., kNear), reversed, unknown,
+                                   Answer(0, 12, 9., kWrong), Answer(0, 6, 3.)};
+  OrderByIds(&matches);
   const std::vector<AnswerLabel> labels =
-      LabelAnswers(ComputePairTruths(RowOfRectangles(), Row()), Row(),
-                   {Answer(3, 9, 2., kNear), reversed, unknown,
-                    Answer(0, 12, 9., kWrong), Answer(0, 6, 3.)});
+      LabelAnswers(ComputePairTruths(RowOfRectangles(), Row()), matches);
   // In the order of the table, the repetition and the unknown pair left out.
   ASSERT_EQ(labels.size(), 3u);
   EXPECT_EQ(labels[0].reference, (SubmapId{0, 3}));
@@ -257,11 +269,11 @@ TEST(MarkPositivesTest, AsksForSmallerOverlapsToo) {
   const std::vector<MatchRow> matches = {Answer(0, 3, 5.), Answer(0, 6, 3.)};
   // Overlaps are 0.75 twice, 0.5 twice, 0.25 once, and else 0.
   MarkPositives(0.6, &pairs);
-  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).num_positives, 2);
-  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).recall_at_precision_1, 1. / 2.);
+  EXPECT_EQ(ScoreMatches(pairs, matches).num_positives, 2);
+  EXPECT_EQ(ScoreMatches(pairs, matches).recall_at_precision_1, 1. / 2.);
   MarkPositives(0.2, &pairs);
-  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).num_positives, 5);
-  EXPECT_EQ(ScoreMatches(pairs, Row(), matches).recall_at_precision_1, 2. / 5.);
+  EXPECT_EQ(ScoreMatches(pairs, matches).num_positives, 5);
+  EXPECT_EQ(ScoreMatches(pairs, matches).recall_at_precision_1, 2. / 5.);
 }
 
 TEST(ScoreMatchesTest, TiesAreTakenInTheOrderOfTheTable) {
@@ -334,7 +346,7 @@ TEST(ScoreMatchesTest, NoPositives) {
     submaps.erase({0, index});
   }
   const MatchScore score =
-      ScoreMatches(ComputePairTruths(submaps, Row()), Row(),
+      ScoreMatches(ComputePairTruths(submaps, Row()),
                    {Answer(0, 12, 1.), Answer(0, 12, 2., kWrong)});
   EXPECT_EQ(score.num_pairs, 1);
   EXPECT_EQ(score.num_positives, 0);
@@ -371,7 +383,7 @@ class RealPairs {
 };
 
 void ExpectPairs(const PairTruths& pairs, const PublishedPairs& expected) {
-  const MatchScore score = ScoreMatches(pairs, Truth{}, Truth{}, {});
+  const MatchScore score = ScoreAnswers(pairs, {});
   EXPECT_EQ(score.num_pairs, expected.num_pairs);
   EXPECT_EQ(score.num_positives, expected.num_positives);
 }
@@ -395,3 +407,75 @@ TEST(RealPairsTest, CountsThePairsOfTwoSessions) {
 
 }  // namespace
 }  // namespace cartographer_sdf::match_score_test
+
+namespace cartographer_sdf::place_recognition_test {
+namespace {
+
+class PlaceRecognitionTest : public ::testing::Test {
+ protected:
+  // The overlap of a pair, and how its answer is judged.
+  void Add(const SubmapId& reference, const SubmapId& query,
+           const double overlap, const AnswerVerdict verdict,
+           const bool accepted) {
+    PairTruth& truth = pairs_[{reference, query}];
+    truth.overlap = overlap;
+    truth.is_positive = overlap >= kPositiveOverlap;
+    AnswerLabel label;
+    label.reference = reference;
+    label.query = query;
+    label.verdict = verdict;
+    labels_.push_back(label);
+    MatchRow match;
+    match.reference = reference;
+    match.query = query;
+    match.accepted = accepted;
+    matches_.push_back(match);
+  }
+  PlaceRecognitionScore Score() const {
+    return ScorePlaceRecognition(pairs_, labels_, matches_);
+  }
+
+  PairTruths pairs_;
+  std::vector<AnswerLabel> labels_;
+  std::vector<MatchRow> matches_;
+};
+
+TEST_F(PlaceRecognitionTest, CountsMatchesAndQueries) {
+  Add({0, 0}, {0, 5}, 0.9, AnswerVerdict::kRight, true);
+  Add({0, 1}, {0, 5}, 0.6, AnswerVerdict::kRight, true);
+  Add({0, 0}, {0, 6}, 0.7, AnswerVerdict::kRight, false);
+  Add({0, 0}, {0, 7}, 0., AnswerVerdict::kWrong, true);
+  Add({0, 0}, {0, 8}, 0.4, AnswerVerdict::kNear, true);
+  // A pair without an answer.
+  pairs_[{{0, 0}, {0, 9}}].is_positive = true;
+  const PlaceRecognitionScore score = Score();
+  EXPECT_EQ(score.num_right, 2);
+  EXPECT_EQ(score.num_near, 1);
+  EXPECT_EQ(score.num_wrong, 1);
+  EXPECT_EQ(score.num_unknown, 0);
+  EXPECT_EQ(score.num_queries, 5);
+  EXPECT_EQ(score.num_queries_with_positive, 3);
+  EXPECT_EQ(score.num_queries_matched, 3);
+  EXPECT_EQ(score.num_queries_right, 1);
+}
+
+TEST_F(PlaceRecognitionTest, CountsPairsWithoutTruth) {
+  Add({0, 0}, {0, 5}, 0.9, AnswerVerdict::kRight, true);
+  MatchRow stranger;
+  stranger.reference = {3, 0};
+  stranger.query = {3, 1};
+  stranger.accepted = true;
+  matches_.push_back(stranger);
+  const PlaceRecognitionScore score = Score();
+  EXPECT_EQ(score.num_right, 1);
+  EXPECT_EQ(score.num_unknown, 1);
+}
+
+TEST_F(PlaceRecognitionTest, OfNothingAllIsZero) {
+  const PlaceRecognitionScore score = Score();
+  EXPECT_EQ(score.num_queries, 0);
+  EXPECT_EQ(score.num_right + score.num_wrong + score.num_unknown, 0);
+}
+
+}  // namespace
+}  // namespace cartographer_sdf::place_recognition_test

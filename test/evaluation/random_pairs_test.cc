@@ -29,7 +29,7 @@ PairTruths ManyPairs(const int num_submaps) {
   PairTruths pairs;
   for (int i = 0; i < num_submaps; ++i) {
     for (int j = i + 3; j < num_submaps; ++j) {
-      pairs[{{0, i}, {0, j}}] = {0.5, Eigen::Vector2d::Zero()};
+      pairs[{{0, i}, {0, j}}].overlap = 0.5;
     }
   }
   return pairs;
@@ -173,7 +173,7 @@ class JudgePairsTest : public ::testing::Test {
     const double overlaps[] = {0.8, 0.6, 0.2, 0.};
     for (int k = 0; k < 4; ++k) {
       const SubmapId query{0, 10 + k};
-      truths_[{{0, 0}, query}] = {overlaps[k], Eigen::Vector2d::Zero()};
+      truths_[{{0, 0}, query}].overlap = overlaps[k];
       pairs_.push_back({{0, 0}, query, 0.});
       if (k == 2) continue;
       AnswerLabel label;

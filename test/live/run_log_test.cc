@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/evaluation/tracking_pose.h"
+#include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/lidar.h"
@@ -43,7 +43,7 @@ std::string SimulatedLog() {
   FillRectangle({6., 4.5}, {12., 9.}, 0., true, &plan);
   FillRectangle({5.5, 4.}, {9., 6.}, 0., false, &plan);
   FillRectangle({9., 5.}, {4., 7.}, 0., false, &plan);
-  FillDisc({5., 4.}, 0.3, true, &plan);
+  FillDisc({5., 4.}, 0.3, &plan);
   std::string log = "# simulated\n";
   for (int i = 0; i < kNumScans; ++i) {
     const Rigid2 T_world_robot = TruePose(i);

@@ -50,12 +50,12 @@ TEST(FloorPlanTest, FillsShapes) {
   EXPECT_TRUE(plan.occupied(corner.x(), corner.y()));
   FillRectangle({3., 3.}, {9., 9.}, 0., false, &plan);
   EXPECT_EQ(plan.occupied.count(), 0);
-  FillDisc({3., 3.}, 1., true, &plan);
+  FillDisc({3., 3.}, 1., &plan);
   EXPECT_NEAR(
       static_cast<double>(plan.occupied.count()) * kResolution * kResolution,
       M_PI, tolerance(2. * M_PI));
-  FillDisc({-0.9, 0.}, 1., true, &plan);  // Clipped.
-  FillDisc({20., 20.}, 1., true, &plan);
+  FillDisc({-0.9, 0.}, 1., &plan);  // Clipped.
+  FillDisc({20., 20.}, 1., &plan);
 }
 
 TEST(FloorPlanTest, ReadsTextFromTheTopLeft) {

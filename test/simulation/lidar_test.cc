@@ -57,7 +57,7 @@ TEST(LidarTest, AgreesWithMarchingThroughClutter) {
   RandomNumbers random(42);
   for (int k = 0; k != 60; ++k) {
     FillDisc({random.Uniform(0., 10.), random.Uniform(0., 10.)},
-             random.Uniform(0.05, 0.4), true, &plan);
+             random.Uniform(0.05, 0.4), &plan);
   }
   constexpr double kStep = 1e-4;
   // A march may step over the tip of a cell's corner that the exact ray hits.

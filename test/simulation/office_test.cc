@@ -105,9 +105,7 @@ TEST(OfficeTest, EachOptionIsReadAndValidated) {
   };
   check(&OfficeOptions::width, 45., 10.);
   check(&OfficeOptions::height, 35., 1e9);
-  check(&OfficeOptions::corridor_width, 2.5, 0.);
   check(&OfficeOptions::wall_thickness, 0.2, -1.);
-  check(&OfficeOptions::door_width, 1.3, 0.1);
   check(&OfficeOptions::closed_doors, 0.5, 1.1);
   check(&OfficeOptions::furniture_density, 0.3, -0.1);
   check(&OfficeOptions::resolution, 0.05, 0.);

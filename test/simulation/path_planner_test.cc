@@ -20,8 +20,7 @@ TEST(PathPlannerTest, ClearanceAgreesWithBruteForce) {
     FloorPlan plan = EmptyFloorPlan({4., 3.}, resolution);
     RandomNumbers random(42);
     for (int k = 0; k != 6; ++k) {
-      FillDisc({random.Uniform(0., 4.), random.Uniform(0., 3.)}, 0.12, true,
-               &plan);
+      FillDisc({random.Uniform(0., 4.), random.Uniform(0., 3.)}, 0.12, &plan);
     }
     const NavigationGrid grid = MakeNavigationGrid(plan, 0.3);
     // Where two plan cells share a navigation cell, its centre is half the
@@ -72,7 +71,7 @@ TEST(PathPlannerTest, KeepsTheLargestComponentOnly) {
 TEST(PathPlannerTest, CostInTheOpenIsTheOctileDistance) {
   const FloorPlan plan = EmptyFloorPlan({8., 8.}, 0.1);
   const NavigationGrid grid = MakeNavigationGrid(plan, 0.4);
-  const ShortestPaths paths = FindShortestPaths(grid, {40, 40});
+  const ShortestPaths paths = FindShortestPaths(grid, 40 + 80 * 40);
   for (int j = 12; j != 68; ++j) {
     for (int i = 12; i != 68; ++i) {
       const int dx = std::abs(i - 40), dy = std::abs(j - 40);
@@ -85,8 +84,8 @@ TEST(PathPlannerTest, CostInTheOpenIsTheOctileDistance) {
 
 TEST(PathPlannerTest, CostsAreConsistentAndPathsLeadThroughDoors) {
   const NavigationGrid grid = MakeNavigationGrid(TwoRooms(true), 0.4);
-  const ShortestPaths paths = FindShortestPaths(grid, {10, 8});
   const int width = grid.geometry.size.x();
+  const ShortestPaths paths = FindShortestPaths(grid, 10 + width * 8);
   for (int k = 0; k != static_cast<int>(paths.cost.size()); ++k) {
     ASSERT_EQ(std::isfinite(paths.cost[k]), grid.reachable(k));
     ASSERT_EQ(paths.parent[k] >= 0, grid.reachable(k));
@@ -98,7 +97,7 @@ TEST(PathPlannerTest, CostsAreConsistentAndPathsLeadThroughDoors) {
     }
   }
   const std::vector<Vector2d> path =
-      SmoothPath(grid, paths, {54, 10}, /*min_clearance=*/0.4);
+      SmoothPath(grid, paths, 54 + width * 10, /*min_clearance=*/0.4);
   EXPECT_EQ(path.front(), grid.geometry.CellCentre({10, 8}));
   EXPECT_EQ(path.back(), grid.geometry.CellCentre({54, 10}));
   bool crosses_door = false;

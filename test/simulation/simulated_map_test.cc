@@ -29,7 +29,7 @@ const SimulatedMap& DefaultMap() {
 absl::StatusOr<SimulatedMap> SmallMap(const uint32_t seed) {
   SimulationOptions options;
   options.drive.length = 30.;
-  options.local_slam.num_range_data = 20;
+  options.num_range_data = 20;
   return Simulate(EmptyFloorPlan({6., 6.}, 0.05), options, seed);
 }
 
@@ -176,7 +176,11 @@ TEST(SimulatedMapTest, SubmapsFitThePlanAtTheirTruePoses) {
 
 TEST(SimulatedMapTest, IntraConstraintsAgreeWithPoses) {
   const SimulatedMap& map = DefaultMap();
-  const std::vector<Constraint> constraints = IntraSubmapConstraints(map);
+  const std::string path = ::testing::TempDir() + "constraints.pbstream";
+  ASSERT_TRUE(WriteSimulatedMap(map, path, path + ".truth.csv").ok());
+  const absl::StatusOr<MapState> state = ReadMap(path);
+  ASSERT_TRUE(state.ok()) << state.status();
+  const std::vector<Constraint>& constraints = state->pose_graph.constraints;
   ASSERT_EQ(constraints.size(), 120 * map.submaps.size());
   std::vector<int> num_submaps(map.nodes.size());
   for (const Constraint& constraint : constraints) {
@@ -337,7 +341,7 @@ TEST(SimulatedMapTest, FailedWritesLeaveNothingBehind) {
 TEST(SimulatedMapTest, ReportsProgress) {
   SimulationOptions options;
   options.drive.length = 30.;
-  options.local_slam.num_range_data = 20;
+  options.num_range_data = 20;
   double last = 0.;
   ASSERT_TRUE(Simulate(EmptyFloorPlan({6., 6.}, 0.05), options, 42,
                        [&](double fraction) {
@@ -359,17 +363,9 @@ TEST(SimulatedMapTest, RefusesWhatCannotBeSimulated) {
   EXPECT_THAT(std::string(Simulate(plan, options, 1).status().message()),
               HasSubstr("num_beams"));
   EXPECT_FALSE(Simulate(EmptyFloorPlan({0.5, 0.5}, 0.05), {}, 1).ok());
-  LocalSlamOptions local_slam;
-  EXPECT_EQ(Validate(local_slam), "");
-  local_slam.num_range_data = 0;
-  EXPECT_NE(Validate(local_slam), "");
-  for (double LocalSlamOptions::*const field :
-       {&LocalSlamOptions::node_distance, &LocalSlamOptions::node_rotation,
-        &LocalSlamOptions::voxel_size}) {
-    local_slam = LocalSlamOptions{};
-    local_slam.*field = 0.;
-    EXPECT_NE(Validate(local_slam), "");
-  }
+  options = SimulationOptions{};
+  options.num_range_data = 0;
+  EXPECT_NE(Validate(options), "");
 }
 
 }  // namespace

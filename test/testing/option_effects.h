@@ -11,7 +11,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "cartographer_sdf/config/option_keys.h"
@@ -21,61 +20,54 @@ namespace cartographer_sdf::testing {
 
 // Counts the leaves of a struct of options, and gives one of them another
 // value: each attempt is another way to change it.
-class LeafChanger {
+class LeafChanger : public OptionVisitor {
  public:
   LeafChanger(const int leaf, const int attempt)
       : leaf_(leaf), attempt_(attempt) {}
 
   static constexpr int kNumAttempts = 10;
 
-  void operator()(const char* const key, double& option) {
+  [[nodiscard]] int num_leaves() const { return num_leaves_; }
+  [[nodiscard]] const std::string& chosen() const { return chosen_; }
+
+ private:
+  void Visit(const char* const key, double& option) override {
     constexpr double kFactors[kNumAttempts] = {0.5, 2.,  0.1,  10.,  0.,
                                                -1., 1e3, 1e-3, -10., 1.5};
     if (!IsChosen(key)) return;
     option = option == 0. ? kFactors[attempt_] : option * kFactors[attempt_];
   }
-  void operator()(const char* const key, int& option) {
+  void Visit(const char* const key, int& option) override {
     if (!IsChosen(key)) return;
     const int values[kNumAttempts] = {
         option / 2, 2 * option,  1, option + 1, option - 1,
         0,          50 * option, 3, 7,          4};
     option = values[attempt_];
   }
-  void operator()(const char* const key, bool& option) {
+  void Visit(const char* const key, bool& option) override {
     if (IsChosen(key)) option = !option;
   }
-  template <typename T>
-  void operator()(const char* const key, T& option) {
-    if constexpr (std::is_enum_v<T>) {
-      if (!IsChosen(key)) return;
-      for (const auto& [name, value] : OptionNames(T())) {
-        if (value != option) {
-          option = value;
-          return;
-        }
-      }
-    } else {
-      const std::string outer = path_;
-      path_ += std::string(key) + ".";
-      VisitOptions(*this, option);
-      path_ = outer;
-    }
+  void VisitName(const char* const key, const std::vector<std::string>& names,
+                 int& index) override {
+    if (IsChosen(key)) index = (index + 1) % static_cast<int>(names.size());
   }
+  bool Enter(const char* const key) override {
+    tables_.emplace_back(key);
+    return true;
+  }
+  void Leave(const std::string& /*problem*/) override { tables_.pop_back(); }
 
-  [[nodiscard]] int num_leaves() const { return num_leaves_; }
-  [[nodiscard]] const std::string& chosen() const { return chosen_; }
-
- private:
   bool IsChosen(const char* const key) {
     if (num_leaves_++ != leaf_) return false;
-    chosen_ = path_ + key;
+    for (const std::string& table : tables_) chosen_ += table + ".";
+    chosen_ += key;
     return true;
   }
 
   const int leaf_;
   const int attempt_;
   int num_leaves_ = 0;
-  std::string path_;
+  std::vector<std::string> tables_;
   std::string chosen_;
 };
 

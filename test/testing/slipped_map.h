@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/grid/scan_grid.h"
 #include "cartographer_sdf/simulation/office.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
 #include "glog/logging.h"

@@ -10,12 +10,12 @@
 #include <cstdint>
 #include <string>
 
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/simulation/office.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "glog/logging.h"
 #include "test/testing/temporary_directory.h"
 

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/trajectory_error.h"
-#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/report/match_table.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/open_counter.h"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/truth.h"
 #include "cartographer_sdf/report/match_table.h"
+#include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/program.h"

@@ -11,7 +11,6 @@
 #include <optional>
 #include <vector>
 
-#include "cartographer_sdf/evaluation/keypoint_repeatability.h"
 #include "cartographer_sdf/grid/scan_grid.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
@@ -19,6 +18,7 @@
 #include "cartographer_sdf/simulation/lidar.h"
 #include "cartographer_sdf/simulation/people.h"
 #include "gtest/gtest.h"
+#include "test/testing/keypoint_repeatability.h"
 
 namespace cartographer_sdf::hard_places_test {
 namespace {
@@ -38,7 +38,7 @@ FloorPlan TwoRooms(const double thickness = 0.15) {
   FillRectangle({1.5, 3.}, {0.6, 1.4}, 0., true, &plan);
   FillRectangle({4.6, 1.3}, {1.6, 0.5}, 0., true, &plan);
   FillRectangle({10.2, 6.7}, {2., 0.5}, 0., true, &plan);
-  FillDisc({9.4, 2.8}, 0.35, true, &plan);
+  FillDisc({9.4, 2.8}, 0.35, &plan);
   return plan;
 }
 
@@ -120,8 +120,9 @@ Recognition Recognise(const Drive& there, const Drive& back) {
   const Place reference = Describe(there, 0), query = Describe(back, 9);
   const Rigid2 T_reference_query =
       there.T_world_submap.Inverse() * back.T_world_submap;
-  KeypointRepeatability repeatability;
-  AddKeypointRepeatability(reference, query, T_reference_query, &repeatability);
+  testing::KeypointRepeatability repeatability;
+  testing::AddKeypointRepeatability(reference, query, T_reference_query,
+                                    &repeatability);
   Recognition result;
   result.repeatability = static_cast<double>(repeatability.Total().num_found) /
                          repeatability.Total().num_judged;

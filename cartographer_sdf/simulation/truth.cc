@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/simulation/truth.h"
 
 #include <vector>
 
@@ -22,7 +22,7 @@ template <typename Id>
 void AppendRows(const char* const kind, const std::map<Id, Rigid2>& poses,
                 std::string* const content) {
   for (const auto& [id, pose] : poses) {
-    absl::StrAppendFormat(content, "%s,%d,%d,%.6f,%.6f,%.6f\n", kind,
+    absl::StrAppendFormat(content, "%s,%d,%d,%.9f,%.9f,%.9f\n", kind,
                           id.trajectory, id.index, pose.translation().x(),
                           pose.translation().y(), pose.rotation());
   }

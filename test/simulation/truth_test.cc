@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/evaluation/truth.h"
+#include "cartographer_sdf/simulation/truth.h"
 
 #include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/file/whole_file.h"
@@ -16,7 +16,7 @@ namespace {
 using ::cartographer_sdf::testing::TemporaryDirectory;
 using ::testing::HasSubstr;
 
-constexpr double kWrittenPrecision = 0.5e-6 + 1e-12;
+constexpr double kWrittenPrecision = 0.5e-9 + 1e-12;
 
 TEST(TruthTest, ComesBackAsItWasWritten) {
   const testing::TemporaryDirectory directory;

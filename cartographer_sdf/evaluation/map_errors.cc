@@ -1,21 +1,32 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/evaluation/relations.h"
+#include "cartographer_sdf/evaluation/map_errors.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/evaluation/tracking_pose.h"
 #include "cartographer_sdf/file/text_file.h"
+#include "cartographer_sdf/geometry/alignment.h"
+#include "cartographer_sdf/geometry/rigid3.h"
 
 namespace cartographer_sdf {
 namespace {
+
+double Quantile(const std::vector<double>& sorted, const double fraction) {
+  const double position = fraction * static_cast<double>(sorted.size() - 1);
+  const size_t below = static_cast<size_t>(position);
+  const size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (position - static_cast<double>(below)) *
+                             (sorted[above] - sorted[below]);
+}
 
 // Universal time: 100 ns ticks since 0001-01-01.
 constexpr double kTicksPerSecond = 1e7;
@@ -33,13 +44,10 @@ struct TimedPose {
 };
 
 std::vector<TimedPose> Trajectory(const PoseGraph& pose_graph) {
-  std::vector<std::pair<int64_t, Rigid2>> stamped;
+  std::multimap<int64_t, Rigid2> stamped;
   for (const auto& [id, node] : pose_graph.nodes) {
-    stamped.emplace_back(node.time, TrackingPose(node));
+    stamped.emplace(node.time, TrackingPose(node));
   }
-  std::stable_sort(
-      stamped.begin(), stamped.end(),
-      [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<TimedPose> trajectory;
   for (const auto& [ticks, pose] : stamped) {
     const double yaw =
@@ -72,19 +80,66 @@ Rigid2 PoseAt(const std::vector<TimedPose>& trajectory, const double time) {
   return Rigid2(pose.head<2>(), pose.z());
 }
 
-struct PoseErrors {
-  std::vector<double> translations;
-  std::vector<double> rotations;
-
-  std::optional<PoseErrorStatistics> Summary() const {
-    const std::optional<ErrorStatistics> translation = Summarize(translations);
-    const std::optional<ErrorStatistics> rotation = Summarize(rotations);
-    if (!translation.has_value() || !rotation.has_value()) return std::nullopt;
-    return PoseErrorStatistics{*translation, *rotation};
-  }
-};
-
 }  // namespace
+
+std::optional<ErrorStatistics> Summarize(std::vector<double> errors) {
+  if (errors.empty()) return std::nullopt;
+  std::sort(errors.begin(), errors.end());
+  ErrorStatistics statistics;
+  statistics.count = static_cast<int>(errors.size());
+  statistics.mean = std::accumulate(errors.begin(), errors.end(), 0.) /
+                    static_cast<double>(errors.size());
+  statistics.median = Quantile(errors, 0.5);
+  statistics.percentile_90 = Quantile(errors, 0.9);
+  statistics.max = errors.back();
+  return statistics;
+}
+
+std::optional<PoseErrorStatistics> SummarizePoses(
+    const std::vector<PoseError>& errors) {
+  if (errors.empty()) return std::nullopt;
+  std::vector<double> translations, rotations;
+  for (const PoseError& error : errors) {
+    translations.push_back(error.translation);
+    rotations.push_back(error.rotation);
+  }
+  return PoseErrorStatistics{*Summarize(translations), *Summarize(rotations)};
+}
+
+Rigid2 TrackingPose(const Node& node) {
+  return Project2D(Embed3D(node.T_map_node) *
+                   Rigid3::Rotation(node.gravity_alignment));
+}
+
+std::optional<TrajectoryError> EvaluateTrajectory(const PoseGraph& pose_graph,
+                                                  const Truth& truth) {
+  std::vector<std::pair<Rigid2, Rigid2>> poses;  // in the world, in the map
+  std::vector<Eigen::Vector2d> p_world;
+  std::vector<Eigen::Vector2d> p_map;
+  TrajectoryError result;
+  for (const auto& [id, node] : pose_graph.nodes) {
+    const auto T_world_tracking = truth.T_world_tracking.find(id);
+    if (T_world_tracking == truth.T_world_tracking.end()) {
+      ++result.num_skipped;
+      continue;
+    }
+    poses.emplace_back(T_world_tracking->second, TrackingPose(node));
+    p_world.push_back(poses.back().first.translation());
+    p_map.push_back(poses.back().second.translation());
+  }
+  const std::optional<Rigid2> T_world_map = AlignPointPairs(p_world, p_map);
+  if (!T_world_map.has_value()) return std::nullopt;
+  result.T_world_map = *T_world_map;
+  std::vector<PoseError> errors;
+  for (const auto& [T_world_tracking, T_map_tracking] : poses) {
+    const Rigid2 T_tracking_estimate =
+        T_world_tracking.Inverse() * *T_world_map * T_map_tracking;
+    errors.push_back({T_tracking_estimate.translation().norm(),
+                      std::abs(T_tracking_estimate.rotation())});
+  }
+  result.errors = *SummarizePoses(errors);
+  return result;
+}
 
 absl::StatusOr<std::vector<Relation>> ReadRelations(const std::string& path) {
   constexpr size_t kNumFields = 7;
@@ -120,8 +175,7 @@ RelationErrors EvaluateRelations(const PoseGraph& pose_graph,
                                  const double seconds_per_scan) {
   const std::vector<TimedPose> trajectory = Trajectory(pose_graph);
   RelationErrors result;
-  PoseErrors all;
-  PoseErrors loops;
+  std::vector<PoseError> all, loops;
   for (const Relation& relation : relations) {
     const double first = relation.first_scan * seconds_per_scan;
     const double second = relation.second_scan * seconds_per_scan;
@@ -134,21 +188,19 @@ RelationErrors EvaluateRelations(const PoseGraph& pose_graph,
     }
     const Rigid2 T_first_second =
         PoseAt(trajectory, first).Inverse() * PoseAt(trajectory, second);
-    const double translation =
+    const PoseError error = {
         (T_first_second.translation() - relation.T_first_second.translation())
-            .norm();
-    const double rotation = std::abs(NormalizeAngle(
-        T_first_second.rotation() - relation.T_first_second.rotation()));
-    all.translations.push_back(translation);
-    all.rotations.push_back(rotation);
+            .norm(),
+        std::abs(NormalizeAngle(T_first_second.rotation() -
+                                relation.T_first_second.rotation()))};
+    all.push_back(error);
     if (std::abs(relation.second_time - relation.first_time) >
         kMinLoopSeconds) {
-      loops.translations.push_back(translation);
-      loops.rotations.push_back(rotation);
+      loops.push_back(error);
     }
   }
-  result.all = all.Summary();
-  result.loops = loops.Summary();
+  result.all = SummarizePoses(all);
+  result.loops = SummarizePoses(loops);
   return result;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#ifndef CARTOGRAPHER_SDF_EVALUATION_TRUTH_H_
-#define CARTOGRAPHER_SDF_EVALUATION_TRUTH_H_
+#ifndef CARTOGRAPHER_SDF_SIMULATION_TRUTH_H_
+#define CARTOGRAPHER_SDF_SIMULATION_TRUTH_H_
 
 #include <map>
 #include <string>
@@ -27,10 +27,10 @@ struct Truth {
 // m, rad].
 [[nodiscard]] absl::StatusOr<Truth> ReadTruth(const std::string& path);
 
-// To 1e-6 m and 1e-6 rad.
+// To 1e-9 m and 1e-9 rad.
 [[nodiscard]] absl::Status WriteTruth(const std::string& path,
                                       const Truth& truth);
 
 }  // namespace cartographer_sdf
 
-#endif  // CARTOGRAPHER_SDF_EVALUATION_TRUTH_H_
+#endif  // CARTOGRAPHER_SDF_SIMULATION_TRUTH_H_
