@@ -53,14 +53,14 @@ absl::Status WriteFiles(const Options& options, const Audit& audit,
   if (!FLAGS_constraints.empty()) {
     status = WriteAuditTable(FLAGS_constraints, audit);
   }
-  std::optional<PreparedMap> output;
+  std::optional<RecordWriter> output;
   const auto read_and_write =
       [&](const SubmapCallback& on_submap) -> absl::Status {
     if (FLAGS_output.empty()) {
       return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
           .status();
     }
-    absl::StatusOr<PreparedMap> map =
+    absl::StatusOr<RecordWriter> map =
         PrepareMap(FLAGS_input, FLAGS_output, audit.pose_graph, {on_submap, {}},
                    progress->Begin("write"));
     if (map.ok()) output.emplace(*std::move(map));

@@ -75,9 +75,9 @@ absl::Status WriteFiles(const Options& options, const LoopClosingResult& result,
   if (!FLAGS_closures.empty()) {
     status = WriteClosures(FLAGS_closures, result.closed.closures);
   }
-  std::optional<PreparedMap> output;
+  std::optional<RecordWriter> output;
   const auto write = [&](const SubmapCallback& on_submap) -> absl::Status {
-    absl::StatusOr<PreparedMap> map =
+    absl::StatusOr<RecordWriter> map =
         PrepareMap(FLAGS_input, FLAGS_output, result.closed.pose_graph,
                    {on_submap, {}}, progress->Begin("write"));
     if (map.ok()) output.emplace(*std::move(map));
