@@ -53,32 +53,14 @@ ConstraintOptions ForgingOptions(const LoopClosingOptions& loop_closing,
   return constraint_options;
 }
 
-// The scans that constraints may need.
-ScansByNode ScansToRegister(const ConstraintOptions& options,
-                            const DescribedMap& map) {
-  ScansByNode scans;
-  for (const auto& [submap, nodes] : FindInsertedNodes(map.state.pose_graph)) {
-    if (map.places.count(submap) == 0) continue;
-    for (const auto& [node, T_submap_node] : ChooseNodes(options, nodes)) {
-      const auto cloud = map.point_clouds.find(node);
-      if (cloud != map.point_clouds.end()) {
-        scans.emplace(node, ToScan(cloud->second));
-      }
-    }
-  }
-  return scans;
-}
-
 // Makes wrong poses of pairs of a map's submaps, and constraints of them.
 class Forger {
  public:
   Forger(const LoopClosingOptions& loop_closing,
-         const FalsificationOptions& options, const DescribedMap& map,
-         const ScansByNode& scans)
+         const FalsificationOptions& options, const DescribedMap& map)
       : loop_closing_(loop_closing),
         options_(options),
         map_(map),
-        scans_(scans),
         nodes_(FindInsertedNodes(map.state.pose_graph)),
         random_(options.seed) {
     for (auto i = map.places.begin(); i != map.places.end(); ++i) {
@@ -167,9 +149,10 @@ class Forger {
       constraint_options.rotation_weight = constraint.rotation_weight;
       break;
     }
+    const ScansByNode no_scans;
     return GenerateConstraints(constraint_options, pair, nodes_,
                                Surface(pair.reference), Surface(pair.query),
-                               with_scans ? scans_ : ScansByNode());
+                               with_scans ? map_.point_clouds : no_scans);
   }
 
   [[nodiscard]] bool IsWrong(const IdPair& ids, const Rigid2& pose) const {
@@ -358,7 +341,6 @@ class Forger {
   const LoopClosingOptions& loop_closing_;
   const FalsificationOptions& options_;
   const DescribedMap& map_;
-  const ScansByNode& scans_;
   const std::map<SubmapId, InsertedNodes> nodes_;
   RandomNumbers random_;
   // Pairs that see one place by the map, and that do not.
@@ -418,9 +400,7 @@ absl::StatusOr<FalsifiedMap> FalsifyMap(
   result.pose_graph = pose_graph;
   if (map->places.empty()) return result;
 
-  const ScansByNode scans =
-      ScansToRegister(ForgingOptions(loop_closing, options), *map);
-  Forger forger(loop_closing, options, *map, scans);
+  Forger forger(loop_closing, options, *map);
   forger.MatchAliases(executor);
   size_t pair = 0;
   for (const FalseKind kind : options.kinds) {

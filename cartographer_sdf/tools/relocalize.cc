@@ -102,7 +102,7 @@ double Duration(const std::map<NodeId, Node>& nodes) {
 absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
                            const Executor& executor,
                            StageProgress* const progress) {
-  const absl::StatusOr<MapWithScans> query = ReadMapWithScans(FLAGS_query);
+  const absl::StatusOr<DescribedMap> query = ReadMapWithScans(FLAGS_query);
   if (!query.ok()) return query.status();
   const double latest_start = std::max(
       0., Duration(query->state.pose_graph.nodes) - FLAGS_first_seconds);
@@ -112,10 +112,10 @@ absl::Status RunManyStarts(const Options& options, const DescribedMap& map,
   for (int k = 0; k < FLAGS_num_starts; ++k) {
     const double start =
         FLAGS_num_starts == 1 ? 0. : latest_start * k / (FLAGS_num_starts - 1);
-    const ScanMap window = DescribeScans(
-        options.scan_places, options.loop_closing.place,
-        options.loop_closing.recognition.match, query->state,
-        query->point_clouds, TimeWindow{start, FLAGS_first_seconds}, executor);
+    const ScanMap window =
+        DescribeScans(options.scan_places, options.loop_closing.place,
+                      options.loop_closing.recognition.match, *query,
+                      TimeWindow{start, FLAGS_first_seconds}, executor);
     const Localization result = LocalizeIn(
         options.localization, options.loop_closing, map, window.map, executor);
     num_localized += result.T_map_query.has_value();
