@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <iterator>
 
 #include "cartographer_sdf/place_store/described_map.h"
 #include "glog/logging.h"
@@ -33,10 +33,7 @@ ClaimEvidence ExamineClaim(const VerificationOptions& options,
                            const Rigid2& claimed) {
   ClaimEvidence claim;
   std::vector<Rigid2> competitors;
-  if (recognized) {
-    claim.recognized_T_reference_query = recognized->pair.T_reference_query;
-    competitors.push_back(recognized->pair.T_reference_query);
-  }
+  if (recognized) competitors.push_back(recognized->pair.T_reference_query);
   const std::optional<VerifiedPose> verified = VerifyClaim(
       options, reference.surface, query.surface, claimed, competitors);
   if (verified) {
@@ -66,37 +63,27 @@ ClaimEvidence ExamineClaim(const VerificationOptions& options,
   return claim;
 }
 
-// Where each pair of submaps begins in the list of groups, in which the groups
-// of a pair stand together, and the end of the list.
-std::vector<size_t> FirstOfPairs(const std::vector<ConstraintGroup>& groups) {
-  std::vector<size_t> first_of_pair;
-  for (size_t k = 0; k < groups.size(); ++k) {
-    if (k == 0 || groups[k].reference != groups[k - 1].reference ||
-        groups[k].query != groups[k - 1].query) {
-      first_of_pair.push_back(k);
-    }
-  }
-  first_of_pair.push_back(groups.size());
-  return first_of_pair;
-}
-
 std::vector<AuditedGroup> ExamineGroups(
     const MatchOptions& match_options, const AuditOptions& options,
     const std::map<SubmapId, Place>& places,
     const std::vector<ConstraintGroup>& groups, const Executor& executor,
     const ProgressCallback& on_progress) {
-  const std::vector<size_t> first_of_pair = FirstOfPairs(groups);
-  const size_t num_pairs = first_of_pair.size() - 1;
+  using PairOfSubmaps = std::pair<SubmapId, SubmapId>;
+  std::map<PairOfSubmaps, std::vector<size_t>> groups_of_pair;
+  for (size_t k = 0; k < groups.size(); ++k) {
+    groups_of_pair[{groups[k].reference, groups[k].query}].push_back(k);
+  }
+  const std::vector<std::pair<PairOfSubmaps, std::vector<size_t>>> pairs(
+      groups_of_pair.begin(), groups_of_pair.end());
   std::vector<AuditedGroup> audited(groups.size());
-  TaskProgress progress(on_progress, num_pairs);
-  executor(num_pairs, [&](const size_t pair) {
-    const size_t first = first_of_pair[pair];
-    const Place& reference = places.at(groups[first].reference);
-    const Place& query = places.at(groups[first].query);
+  TaskProgress progress(on_progress, pairs.size());
+  executor(pairs.size(), [&](const size_t pair) {
+    const Place& reference = places.at(pairs[pair].first.first);
+    const Place& query = places.at(pairs[pair].first.second);
     // Once for all groups of the pair.
     const std::optional<Match> recognized =
         MatchPlaces(match_options, reference, query);
-    for (size_t k = first; k < first_of_pair[pair + 1]; ++k) {
+    for (const size_t k : pairs[pair].second) {
       audited[k].group = groups[k];
       audited[k].claim =
           ExamineClaim(match_options.verification, options.grouping, reference,
@@ -287,27 +274,14 @@ std::string Validate(const AuditOptions& options) {
 }
 
 const char* AuditVerdictName(const AuditVerdict verdict) {
-  switch (verdict) {
-    case AuditVerdict::kConfirmed:
-      return "confirmed";
-    case AuditVerdict::kAgreesWithMap:
-      return "agrees_with_map";
-    case AuditVerdict::kUnchecked:
-      return "unchecked";
-    case AuditVerdict::kContradicted:
-      return "contradicted";
-    case AuditVerdict::kAmbiguous:
-      return "ambiguous";
-    case AuditVerdict::kUnlikely:
-      return "unlikely";
-    case AuditVerdict::kOutvoted:
-      return "outvoted";
-    case AuditVerdict::kUnsupported:
-      return "unsupported";
-    case AuditVerdict::kContradictedByMap:
-      return "contradicted_by_map";
-  }
-  LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
+  // In the order of the enumerators.
+  constexpr const char* kNames[] = {
+      "confirmed",    "agrees_with_map", "unchecked",
+      "contradicted", "ambiguous",       "unlikely",
+      "outvoted",     "unsupported",     "contradicted_by_map"};
+  static_assert(std::size(kNames) ==
+                static_cast<size_t>(AuditVerdict::kContradictedByMap) + 1);
+  return kNames[static_cast<size_t>(verdict)];
 }
 
 bool IsDoubtful(const AuditVerdict verdict) {

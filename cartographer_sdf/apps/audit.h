@@ -14,7 +14,6 @@
 #ifndef CARTOGRAPHER_SDF_APPS_AUDIT_H_
 #define CARTOGRAPHER_SDF_APPS_AUDIT_H_
 
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -82,9 +81,6 @@ struct ClaimEvidence {
   // Lead over the best distinct pose, as VerifiedPose::margin.
   double margin = 0.;
   double score = 0.;  // log-odds of being right, as verification scores matches
-  // Where recognition, which is not told the claim, would put the query; none
-  // where it finds no pose.
-  std::optional<Rigid2> recognized_T_reference_query;
 };
 
 struct AuditedConstraint {

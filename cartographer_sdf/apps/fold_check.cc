@@ -13,61 +13,48 @@
 namespace cartographer_sdf {
 namespace {
 
-struct PairToCheck {
-  const Place* reference;
-  const Place* query;
-  bool overlaps = false;
+// Two submaps that are laid over each other.
+struct Overlap {
   std::optional<Match> contradiction;
 };
 
-Rigid2 Between(const PoseGraph& graph, const PairToCheck& pair) {
-  return graph.submap_poses.at(pair.reference->id).Inverse() *
-         graph.submap_poses.at(pair.query->id);
+struct PairToCheck {
+  const Place* reference;
+  const Place* query;
+  std::optional<Overlap> overlap;
+};
+
+std::vector<PairToCheck> ListPairs(const int min_index_gap,
+                                   const std::map<SubmapId, Place>& places) {
+  std::vector<PairToCheck> pairs;
+  for (auto reference = places.begin(); reference != places.end();
+       ++reference) {
+    for (auto query = std::next(reference); query != places.end(); ++query) {
+      if (ShareScans(reference->first, query->first, min_index_gap)) {
+        continue;
+      }
+      pairs.push_back({&reference->second, &query->second, {}});
+    }
+  }
+  return pairs;
 }
 
-class OverlapChecker {
- public:
-  OverlapChecker(const FoldCheckOptions& options,
-                 const VerificationOptions& verification,
-                 const JoinedSessions& joined, const PoseGraph& merged)
-      : options_(options),
-        verification_(verification),
-        joined_(joined),
-        merged_(merged) {}
-
-  void Check(PairToCheck* const pair) const {
-    const Rigid2 after = Between(merged_, *pair);
-    pair->overlaps = Overlap(*pair, after);
-    if (!pair->overlaps) return;
-    pair->contradiction = Contradiction(*pair, after);
-    if (!pair->contradiction || joined_.SessionOf(pair->reference->id) !=
-                                    joined_.SessionOf(pair->query->id)) {
-      return;
-    }
-    // What contradicted itself before is not the merge's fault.
-    const Rigid2 before = Between(joined_.state.pose_graph, *pair);
-    if (Overlap(*pair, before) && Contradiction(*pair, before)) {
-      pair->contradiction.reset();
-    }
+// None where the graph does not lay the two over each other.
+std::optional<Overlap> FindOverlap(const FoldCheckOptions& options,
+                                   const VerificationOptions& verification,
+                                   const PairToCheck& pair,
+                                   const PoseGraph& graph) {
+  const Rigid2 T_reference_query =
+      graph.submap_poses.at(pair.reference->id).Inverse() *
+      graph.submap_poses.at(pair.query->id);
+  if (!OverlapsEnough(pair.reference->surface, pair.query->surface,
+                      T_reference_query)) {
+    return std::nullopt;
   }
-
- private:
-  [[nodiscard]] static bool Overlap(const PairToCheck& pair,
-                                    const Rigid2& T_reference_query) {
-    return OverlapsEnough(pair.reference->surface, pair.query->surface,
-                          T_reference_query);
-  }
-  [[nodiscard]] std::optional<Match> Contradiction(
-      const PairToCheck& pair, const Rigid2& T_reference_query) const {
-    return FindContradiction(verification_, options_.max_contradiction_ratio,
-                             *pair.reference, *pair.query, T_reference_query);
-  }
-
-  const FoldCheckOptions& options_;
-  const VerificationOptions& verification_;
-  const JoinedSessions& joined_;
-  const PoseGraph& merged_;
-};
+  return Overlap{
+      FindContradiction(verification, options.max_contradiction_ratio,
+                        *pair.reference, *pair.query, T_reference_query)};
+}
 
 }  // namespace
 
@@ -87,30 +74,32 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
     const FoldCheckOptions& options, const RecognitionOptions& recognition,
     const JoinedSessions& joined, const PoseGraph& merged,
     const Executor& executor) {
-  std::vector<PairToCheck> pairs;
-  for (auto reference = joined.places.begin(); reference != joined.places.end();
-       ++reference) {
-    for (auto query = std::next(reference); query != joined.places.end();
-         ++query) {
-      if (ShareScans(reference->first, query->first,
-                     recognition.min_index_gap)) {
-        continue;
-      }
-      pairs.push_back({&reference->second, &query->second, false, {}});
+  std::vector<PairToCheck> pairs =
+      ListPairs(recognition.min_index_gap, joined.places);
+  const auto check = [&](const PairToCheck& pair, const PoseGraph& graph) {
+    return FindOverlap(options, recognition.match.verification, pair, graph);
+  };
+  executor(pairs.size(), [&](const size_t k) {
+    PairToCheck& pair = pairs[k];
+    pair.overlap = check(pair, merged);
+    if (!pair.overlap || !pair.overlap->contradiction ||
+        joined.SessionOf(pair.reference->id) !=
+            joined.SessionOf(pair.query->id)) {
+      return;
     }
-  }
-  const OverlapChecker checker(options, recognition.match.verification, joined,
-                               merged);
-  executor(pairs.size(), [&](const size_t k) { checker.Check(&pairs[k]); });
+    // What contradicted itself before is not the merge's fault.
+    const std::optional<Overlap> before = check(pair, joined.state.pose_graph);
+    if (before && before->contradiction) pair.overlap->contradiction.reset();
+  });
   std::map<std::pair<size_t, size_t>, SessionOverlap> overlaps;
   for (PairToCheck& pair : pairs) {
-    if (!pair.overlaps) continue;
+    if (!pair.overlap) continue;
     SessionOverlap& overlap =
         overlaps[std::minmax({joined.SessionOf(pair.reference->id),
                               joined.SessionOf(pair.query->id)})];
     ++overlap.num_overlapping;
-    if (pair.contradiction) {
-      overlap.contradictions.push_back(*std::move(pair.contradiction));
+    if (pair.overlap->contradiction) {
+      overlap.contradictions.push_back(*std::move(pair.overlap->contradiction));
     }
   }
   return overlaps;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "cartographer_sdf/apps/joined_sessions.h"
+#include "cartographer_sdf/apps/session.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/recognition/recognize.h"
 

@@ -10,39 +10,34 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/apps/joined_sessions.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// Indices that are joined, each named by the lowest one it is joined with.
-class Groups {
- public:
-  explicit Groups(const size_t size) : parents_(size) {
-    std::iota(parents_.begin(), parents_.end(), size_t{0});
-  }
-  [[nodiscard]] size_t Of(const size_t k) const {
-    return parents_[k] == k ? k : Of(parents_[k]);
-  }
-  void Join(const size_t a, const size_t b) {
-    const size_t group_a = Of(a), group_b = Of(b);
-    parents_[std::max(group_a, group_b)] = std::min(group_a, group_b);
-  }
-  // The largest group, the first of equally large ones.
-  [[nodiscard]] size_t Largest() const {
-    std::map<size_t, int> sizes;
-    for (size_t k = 0; k < parents_.size(); ++k) ++sizes[Of(k)];
-    size_t largest = 0;
-    for (const auto& [group, size] : sizes) {
-      if (size > sizes.at(largest)) largest = group;
-    }
-    return largest;
-  }
+// Of each index, the lowest one that it is joined with.
+std::vector<size_t> SingleGroups(const size_t size) {
+  std::vector<size_t> groups(size);
+  std::iota(groups.begin(), groups.end(), size_t{0});
+  return groups;
+}
 
- private:
-  std::vector<size_t> parents_;
-};
+void JoinGroups(const size_t a, const size_t b,
+                std::vector<size_t>* const groups) {
+  const size_t group_a = (*groups)[a], group_b = (*groups)[b];
+  std::replace(groups->begin(), groups->end(), std::max(group_a, group_b),
+               std::min(group_a, group_b));
+}
+
+// The first of equally large ones.
+size_t LargestGroup(const std::vector<size_t>& groups) {
+  std::map<size_t, int> sizes;
+  for (const size_t group : groups) ++sizes[group];
+  return std::max_element(
+             sizes.begin(), sizes.end(),
+             [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
+}
 
 bool IsCertain(const SessionLink& link) {
   return link.localization.verdict == LocalizationVerdict::kLocalized;
@@ -102,27 +97,41 @@ std::string DescribeStrangers(const MergingResult& result) {
                       most_alike.localization.reason);
 }
 
-// Accepted matches of the joined map: those within sessions, and between two
-// those that vote for where one lies in the other.
-std::vector<Match> CollectMatches(
-    const JoinedSessions& joined,
-    const std::map<size_t, std::vector<Match>>& within,
-    const std::vector<SessionLink>& links) {
+// Accepted matches of the joined map: of those between two sessions the ones
+// that vote for where one lies in the other, and where `also_within` those
+// within each.
+std::vector<Match> CollectMatches(const LoopClosingOptions& stages,
+                                  const std::vector<const Session*>& sessions,
+                                  const JoinedSessions& joined,
+                                  const std::vector<SessionLink>& links,
+                                  const bool also_within,
+                                  const Executor& executor,
+                                  StageClock* const clock) {
   std::vector<Match> matches;
-  for (const auto& [session, of_session] : within) {
-    const std::optional<size_t> part = joined.PartOf(session);
-    if (!part) continue;
-    for (const Match& match : of_session) {
-      matches.push_back(joined.Renamed(match, *part, *part));
+  const auto add = [&](Match match, const size_t first, const size_t second) {
+    const auto reference_part = joined.parts.find(first);
+    const auto query_part = joined.parts.find(second);
+    if (reference_part == joined.parts.end() ||
+        query_part == joined.parts.end()) {
+      return;
+    }
+    PairPose& pair = match.pair;
+    pair.reference = Renumbered(reference_part->second, pair.reference);
+    pair.query = Renumbered(query_part->second, pair.query);
+    matches.push_back(std::move(match));
+  };
+  for (size_t k = 0; also_within && k < sessions.size(); ++k) {
+    if (joined.parts.count(k) == 0) continue;
+    for (const Match& match : RecognizeWithin(
+             stages.recognition, sessions[k]->map.trajectory_places(), executor,
+             clock)) {
+      add(match, k, k);
     }
   }
   for (const SessionLink& link : links) {
-    const std::optional<size_t> first = joined.PartOf(link.first);
-    const std::optional<size_t> second = joined.PartOf(link.second);
-    if (!first || !second || !IsCertain(link)) continue;
+    if (!IsCertain(link)) continue;
     for (const size_t vote : link.localization.placements.front().votes) {
-      matches.push_back(
-          joined.Renamed(link.localization.matches[vote], *first, *second));
+      add(link.localization.matches[vote], link.first, link.second);
     }
   }
   std::stable_sort(matches.begin(), matches.end(),
@@ -137,15 +146,15 @@ std::vector<Match> CollectMatches(
 std::string DescribeSplit(const JoinedSessions& joined,
                           const std::vector<Closure>& closures,
                           const std::vector<const Session*>& sessions) {
-  Groups groups(sessions.size());
+  std::vector<size_t> groups = SingleGroups(sessions.size());
   for (const Closure& closure : closures) {
     if (closure.status != ClosureStatus::kInGraph) continue;
-    groups.Join(joined.SessionOf(closure.match.pair.reference),
-                joined.SessionOf(closure.match.pair.query));
+    JoinGroups(joined.SessionOf(closure.match.pair.reference),
+               joined.SessionOf(closure.match.pair.query), &groups);
   }
-  const size_t first = joined.sessions.front();
-  for (const size_t session : joined.sessions) {
-    if (groups.Of(session) == groups.Of(first)) continue;
+  const size_t first = joined.parts.begin()->first;
+  for (const auto& [session, part] : joined.parts) {
+    if (groups[session] == groups[first]) continue;
     return absl::StrCat("the optimised map contradicts all matches of ",
                         sessions[session]->path, " with ",
                         sessions[first]->path,
@@ -159,7 +168,7 @@ void JoinAndClose(const FoldCheckOptions& options,
                   const LoopClosingOptions& stages,
                   const std::vector<const Session*>& sessions,
                   const std::map<size_t, Rigid2>& placed,
-                  const std::map<size_t, std::vector<Match>>& within,
+                  const bool closes_within,
                   const std::set<int>& frozen_trajectories,
                   const Executor& executor, StageClock* const clock,
                   MergingResult* const result) {
@@ -170,8 +179,9 @@ void JoinAndClose(const FoldCheckOptions& options,
   result->closed = CloseGraph(
       stages.closing,
       {&joined.placed, &joined.odometry, &joined.places, &joined.point_clouds},
-      CollectMatches(joined, within, result->links), frozen_trajectories,
-      executor, clock);
+      CollectMatches(stages, sessions, joined, result->links, closes_within,
+                     executor, clock),
+      frozen_trajectories, executor, clock);
   clock->Begin("check for folds");
   const auto overlaps = CheckOverlaps(options, stages.recognition, joined,
                                       result->closed.pose_graph, executor);
@@ -186,7 +196,9 @@ void JoinAndClose(const FoldCheckOptions& options,
     result->refusal = DescribeFold(options, overlaps, sessions);
   }
   RemoveScanSubmaps(joined, &result->closed.pose_graph);
-  result->parts = std::move(joined.parts);
+  for (auto& [session, part] : joined.parts) {
+    result->parts.push_back(std::move(part));
+  }
   result->state = std::move(joined.state);
 }
 
@@ -253,20 +265,6 @@ std::string FindRefusal(const MergingResult& result,
   return "";
 }
 
-std::map<size_t, std::vector<Match>> MatchWithin(
-    const LoopClosingOptions& stages,
-    const std::vector<const Session*>& sessions,
-    const std::map<size_t, Rigid2>& placed, const Executor& executor,
-    StageClock* const clock) {
-  std::map<size_t, std::vector<Match>> within;
-  for (const auto& [k, T_merged_session] : placed) {
-    within[k] =
-        RecognizeWithin(stages.recognition,
-                        sessions[k]->map.trajectory_places(), executor, clock);
-  }
-  return within;
-}
-
 }  // namespace
 
 absl::StatusOr<MergingResult> MergeSessions(
@@ -277,7 +275,8 @@ absl::StatusOr<MergingResult> MergeSessions(
     const StageCallback& on_stage) {
   CHECK_EQ(Validate(options), "");
   CHECK_GE(paths.size(), 2u);
-  if (absl::Status status = CheckPaths(paths); !status.ok()) return status;
+  const absl::Status status = CheckPaths(paths);
+  if (!status.ok()) return status;
   MergingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
   const absl::StatusOr<std::vector<Session>> sessions = ReadSessions(
@@ -285,15 +284,15 @@ absl::StatusOr<MergingResult> MergeSessions(
   if (!sessions.ok()) return sessions.status();
   result.links =
       LinkSessions(localization, stages, *sessions, executor, &clock);
-  Groups groups(sessions->size());
+  std::vector<size_t> groups = SingleGroups(sessions->size());
   for (const SessionLink& link : result.links) {
-    if (IsCertain(link)) groups.Join(link.first, link.second);
+    if (IsCertain(link)) JoinGroups(link.first, link.second, &groups);
   }
   for (size_t k = 0; k < paths.size(); ++k) {
-    result.sessions.push_back({paths[k], groups.Of(k), {}});
+    result.sessions.push_back({paths[k], groups[k], {}});
   }
   const std::map<size_t, Rigid2> placed =
-      PlaceSessions(groups.Largest(), result.links);
+      PlaceSessions(LargestGroup(groups), result.links);
   result.refusal = FindRefusal(result, placed, !frozen_trajectories.empty());
   if (!result.refusal.empty()) {
     clock.End();
@@ -301,8 +300,7 @@ absl::StatusOr<MergingResult> MergeSessions(
   }
   std::vector<const Session*> pointers;
   for (const Session& session : *sessions) pointers.push_back(&session);
-  JoinAndClose(options, stages, pointers, placed,
-               MatchWithin(stages, pointers, placed, executor, &clock),
+  JoinAndClose(options, stages, pointers, placed, /*closes_within=*/true,
                frozen_trajectories, executor, &clock, &result);
   clock.End();
   return result;
@@ -314,9 +312,8 @@ absl::StatusOr<MergingResult> AttachQuery(
     const Executor& executor, const StageCallback& on_stage) {
   CHECK_EQ(Validate(options), "");
   CHECK(localization.T_map_query.has_value());
-  if (absl::Status status = CheckPaths({map.path, query.path}); !status.ok()) {
-    return status;
-  }
+  const absl::Status status = CheckPaths({map.path, query.path});
+  if (!status.ok()) return status;
   MergingResult result;
   result.sessions = {{map.path, 0, {}}, {query.path, 0, {}}};
   result.links = {{0, 1, localization}};
@@ -326,8 +323,9 @@ absl::StatusOr<MergingResult> AttachQuery(
   }
   StageClock clock(on_stage, &result.stage_seconds);
   JoinAndClose(options, stages, {&map, &query},
-               {{0, Rigid2()}, {1, *localization.T_map_query}}, {},
-               frozen_trajectories, executor, &clock, &result);
+               {{0, Rigid2()}, {1, *localization.T_map_query}},
+               /*closes_within=*/false, frozen_trajectories, executor, &clock,
+               &result);
   clock.End();
   return result;
 }

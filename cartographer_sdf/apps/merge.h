@@ -7,7 +7,6 @@
 #define CARTOGRAPHER_SDF_APPS_MERGE_H_
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>

@@ -3,7 +3,7 @@
 
 #include "cartographer_sdf/apps/session.h"
 
-#include <set>
+#include <algorithm>
 #include <utility>
 
 #include "glog/logging.h"
@@ -44,6 +44,39 @@ std::set<int> TrajectoriesWithoutSubmaps(const MapState& state) {
   return trajectories;
 }
 
+void Move(const Rigid2& T_moved_map, PoseGraph* const graph) {
+  for (auto& [id, pose] : graph->submap_poses) pose = T_moved_map * pose;
+  for (auto& [id, node] : graph->nodes) {
+    node.T_map_node = T_moved_map * node.T_map_node;
+  }
+  for (auto& [id, pose] : graph->landmark_poses) {
+    pose = Embed3D(T_moved_map) * pose;
+  }
+}
+
+bool IsIdentity(const Rigid2& pose) {
+  return pose.translation().isZero(0.) && pose.rotation() == 0.;
+}
+
+// The places of a session and what belongs to them, under their new ids.
+void AddPlaces(const Session& session, const MapPart& part,
+               JoinedSessions* const joined) {
+  for (const auto& [id, place] : session.map.places) {
+    Place renamed = place;
+    renamed.id = Renumbered(part, id);
+    joined->places.emplace(renamed.id, std::move(renamed));
+  }
+  for (const auto& [id, pose] : session.map.odometry) {
+    joined->odometry.emplace(Renumbered(part, id), pose);
+  }
+  for (const auto& [id, grid] : session.scan_grids) {
+    joined->scan_submaps.insert(Renumbered(part, id));
+  }
+  for (const auto& [id, cloud] : session.map.point_clouds) {
+    joined->point_clouds.emplace(Renumbered(part, id), cloud);
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
@@ -54,12 +87,11 @@ absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
                                         const ProgressCallback& on_progress) {
   const MatchOptions& match = options.recognition.match;
   if (window) {
-    const absl::StatusOr<MapWithScans> read =
+    const absl::StatusOr<DescribedMap> read =
         ReadMapWithScans(path, on_progress);
     if (!read.ok()) return read.status();
-    ScanMap scans =
-        DescribeScans(scan_places, options.place, match, read->state,
-                      read->point_clouds, *window, executor);
+    ScanMap scans = DescribeScans(scan_places, options.place, match, *read,
+                                  *window, executor);
     return Session{path, std::move(scans.map), std::move(scans.grids)};
   }
   absl::StatusOr<DescribedMap> map = DescribeMap(
@@ -69,8 +101,7 @@ absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
   const std::set<int> without_submaps =
       TrajectoriesWithoutSubmaps(session.map.state);
   if (!without_submaps.empty()) {
-    AddScanPlaces(DescribeScans(scan_places, options.place, match,
-                                session.map.state, session.map.point_clouds,
+    AddScanPlaces(DescribeScans(scan_places, options.place, match, session.map,
                                 TimeWindow(), executor, without_submaps),
                   &session);
   }
@@ -96,6 +127,54 @@ Localization LocalizeIn(const LocalizationOptions& options,
                             on_progress);
       },
       executor, on_stage);
+}
+
+JoinedSessions JoinSessions(const ClosingOptions& options,
+                            const std::vector<const Session*>& sessions,
+                            const std::map<size_t, Rigid2>& T_merged_session) {
+  JoinedSessions joined;
+  std::vector<std::string> paths;
+  std::vector<const MapState*> states;
+  for (const auto& [k, pose] : T_merged_session) {
+    paths.push_back(sessions[k]->path);
+    states.push_back(&sessions[k]->map.state);
+  }
+  std::vector<MapPart> parts = NumberTrajectories(paths, states);
+  MapState placed;
+  auto next_part = parts.begin();
+  for (const auto& [k, pose] : T_merged_session) {
+    const MapPart& part = joined.parts[k] = std::move(*next_part++);
+    MapState state = sessions[k]->map.state;
+    AppendMap(part, state, &joined.state);
+    const std::optional<OdometryWeights> weights =
+        options.infer_odometry_weights
+            ? InferOdometryWeights(options.optimization, state.pose_graph)
+            : std::nullopt;
+    // The first stays to the last bit.
+    if (!IsIdentity(pose)) Move(pose, &state.pose_graph);
+    AppendMap(part, state, &placed);
+    AddPlaces(*sessions[k], part, &joined);
+    for (const auto& [trajectory, number] : part.trajectories) {
+      joined.session_of_trajectory[number] = k;
+      if (weights) placed.pose_graph.odometry_weights[number] = *weights;
+    }
+  }
+  joined.placed = std::move(placed.pose_graph);
+  return joined;
+}
+
+void RemoveScanSubmaps(const JoinedSessions& joined,
+                       PoseGraph* const pose_graph) {
+  for (const SubmapId& id : joined.scan_submaps) {
+    pose_graph->submap_poses.erase(id);
+  }
+  std::vector<Constraint>& constraints = pose_graph->constraints;
+  constraints.erase(
+      std::remove_if(constraints.begin(), constraints.end(),
+                     [&](const Constraint& constraint) {
+                       return joined.scan_submaps.count(constraint.submap) > 0;
+                     }),
+      constraints.end());
 }
 
 }  // namespace cartographer_sdf

@@ -6,14 +6,19 @@
 #ifndef CARTOGRAPHER_SDF_APPS_SESSION_H_
 #define CARTOGRAPHER_SDF_APPS_SESSION_H_
 
+#include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/closing/pipeline.h"
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
+#include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/place_store/described_map.h"
 
 namespace cartographer_sdf {
@@ -42,6 +47,32 @@ struct Session {
                                       const DescribedMap& query,
                                       const Executor& executor,
                                       const StageCallback& on_stage = {});
+
+// Several sessions as one map, under new trajectory numbers.
+struct JoinedSessions {
+  std::map<size_t, MapPart> parts;  // by session, those that were joined
+  // All ids are the new ones.
+  MapState state;    // as read
+  PoseGraph placed;  // with the poses where the sessions were laid
+  std::map<SubmapId, Place> places;
+  std::map<SubmapId, OdometryPose> odometry;
+  std::map<NodeId, PointCloud2> point_clouds;
+  std::map<int, size_t> session_of_trajectory;
+  std::set<SubmapId> scan_submaps;  // in no file
+
+  [[nodiscard]] size_t SessionOf(const SubmapId& id) const {
+    return session_of_trajectory.at(id.trajectory);
+  }
+};
+
+// Joins the sessions that `T_merged_session` lays somewhere; each is weighed by
+// the odometry weights that it shows, where they are to be inferred.
+[[nodiscard]] JoinedSessions JoinSessions(
+    const ClosingOptions& options, const std::vector<const Session*>& sessions,
+    const std::map<size_t, Rigid2>& T_merged_session);
+
+// Submaps that are in no file can't be written.
+void RemoveScanSubmaps(const JoinedSessions& joined, PoseGraph* pose_graph);
 
 }  // namespace cartographer_sdf
 

@@ -3,34 +3,20 @@
 
 #include "cartographer_sdf/closing/closure.h"
 
+#include <cstddef>
+#include <iterator>
 #include <utility>
-
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 
 const char* ClosureStatusName(const ClosureStatus status) {
-  switch (status) {
-    case ClosureStatus::kSelected:
-      return "selected";
-    case ClosureStatus::kInGraph:
-      return "in_graph";
-    case ClosureStatus::kInconsistent:
-      return "inconsistent";
-    case ClosureStatus::kUnsupported:
-      return "unsupported";
-    case ClosureStatus::kScansDisagree:
-      return "scans_disagree";
-    case ClosureStatus::kOutlier:
-      return "outlier";
-    case ClosureStatus::kReady:
-      return "ready";
-    case ClosureStatus::kDetectedOnly:
-      return "detected_only";
-    case ClosureStatus::kGone:
-      return "gone";
-  }
-  LOG(FATAL) << "not a status: " << static_cast<int>(status);
+  // In the order of the enumerators.
+  constexpr const char* kNames[] = {
+      "selected", "in_graph", "inconsistent",  "unsupported", "scans_disagree",
+      "outlier",  "ready",    "detected_only", "gone"};
+  static_assert(std::size(kNames) ==
+                static_cast<size_t>(ClosureStatus::kGone) + 1);
+  return kNames[static_cast<size_t>(status)];
 }
 
 std::vector<Closure> MakeClosures(std::vector<Match> matches) {

@@ -6,6 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -55,12 +58,8 @@ std::optional<UncertainPose> Odometry(
   const double rotation_sigma =
       options.rotation_sigma_per_sqrt_meter * std::sqrt(driven);
   const Rigid2 T_a_b = from.T_local_submap.Inverse() * to.T_local_submap;
-  // Rotation gathered evenly on the way moves the end by the lever of the
-  // second half, on average.
-  const double swing = rotation_sigma * driven / std::sqrt(3.);
-  const double slip = options.translation_sigma_per_meter * driven;
   return UncertainPose{
-      T_a_b, DiagonalCovariance(std::hypot(swing, slip), rotation_sigma)};
+      T_a_b, DiagonalCovariance(DriftSigma(options, driven), rotation_sigma)};
 }
 
 PairPose Inverse(const PairPose& closure) {
@@ -96,73 +95,9 @@ double TranslationSigma(const UncertainPose& pose) {
   return std::sqrt(0.5 * pose.covariance.topLeftCorner<2, 2>().trace());
 }
 
-// One of a pair's symmetric table of verdicts.
-class VerdictTable {
- public:
-  VerdictTable(const ConsistencyOptions& options,
-               const std::map<SubmapId, OdometryPose>& odometry,
-               const std::vector<PairPose>& closures)
-      : size_(closures.size()),
-        verdicts_(size_ * size_, CycleVerdict::kUninformative) {
-    for (size_t a = 0; a < size_; ++a) {
-      for (size_t b = a + 1; b < size_; ++b) {
-        verdicts_[a * size_ + b] = verdicts_[b * size_ + a] =
-            CheckCycle(options, odometry, closures[a], closures[b]);
-      }
-    }
-  }
-  CycleVerdict operator()(const size_t a, const size_t b) const {
-    return verdicts_[a * size_ + b];
-  }
-
- private:
-  const size_t size_;
-  std::vector<CycleVerdict> verdicts_;
-};
-
-// Support and contradiction of closure k by the chosen closures.
-SelectionResult WeighAgainst(const VerdictTable& table,
-                             const std::vector<PairPose>& closures,
-                             const std::vector<size_t>& chosen,
-                             const size_t k) {
-  SelectionResult result{Selection::kSelected};
-  for (const size_t other : chosen) {
-    if (other == k) continue;
-    const double score = std::max(closures[other].score, 0.);
-    switch (table(k, other)) {
-      case CycleVerdict::kConsistent:
-        result.support += score;
-        break;
-      case CycleVerdict::kInconsistent:
-        result.contradiction += score;
-        break;
-      case CycleVerdict::kUninformative:
-        break;
-    }
-  }
-  return result;
-}
-
-// The closures that most others support come first, and set the frame in which
-// later ones are judged. The same whatever the order given.
-std::vector<size_t> InOrderOfWeight(const VerdictTable& table,
-                                    const std::vector<PairPose>& closures) {
-  std::vector<size_t> order(closures.size());
-  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
-  // Sums round the same.
-  std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
-    return IsBeforeByIds(closures[a], closures[b]);
-  });
-  std::vector<double> weight;
-  for (size_t k = 0; k < closures.size(); ++k) {
-    const SelectionResult weighed = WeighAgainst(table, closures, order, k);
-    weight.push_back(closures[k].score + weighed.support -
-                     weighed.contradiction);
-  }
-  std::stable_sort(
-      order.begin(), order.end(),
-      [&](const size_t a, const size_t b) { return weight[a] > weight[b]; });
-  return order;
+// Another id than that of any submap of a file, whose numbers are not negative.
+SubmapId Apart(const SubmapId& id) {
+  return {std::numeric_limits<int>::min() + id.trajectory, id.index};
 }
 
 }  // namespace
@@ -180,6 +115,14 @@ std::string Validate(const ConsistencyOptions& options) {
            "must be positive";
   }
   return "";
+}
+
+double DriftSigma(const ConsistencyOptions& options, const double driven) {
+  // Rotation gathered evenly on the way moves the end by the lever of the
+  // second half, on average.
+  const double swing = options.rotation_sigma_per_sqrt_meter *
+                       std::sqrt(driven) * driven / std::sqrt(3.);
+  return std::hypot(swing, options.translation_sigma_per_meter * driven);
 }
 
 CycleVerdict CheckCycle(const ConsistencyOptions& options,
@@ -212,16 +155,68 @@ CycleVerdict CheckCycle(const ConsistencyOptions& options,
              : CycleVerdict::kInconsistent;
 }
 
+VerdictTable::VerdictTable(
+    const std::vector<PairPose>& closures,
+    const std::function<CycleVerdict(const PairPose&, const PairPose&)>& check)
+    : closures_(closures), verdicts_(closures.size() * closures.size()) {
+  for (size_t a = 0; a < closures.size(); ++a) {
+    for (size_t b = a + 1; b < closures.size(); ++b) {
+      verdicts_[a * closures.size() + b] = verdicts_[b * closures.size() + a] =
+          check(closures[a], closures[b]);
+    }
+  }
+}
+
+SelectionResult VerdictTable::Weigh(const size_t k,
+                                    const std::vector<size_t>& others) const {
+  SelectionResult result{Selection::kSelected};
+  for (const size_t other : others) {
+    if (other == k) continue;
+    const double score = std::max(closures_[other].score, 0.);
+    const CycleVerdict verdict = verdicts_[k * closures_.size() + other];
+    if (verdict == CycleVerdict::kConsistent) result.support += score;
+    if (verdict == CycleVerdict::kInconsistent) result.contradiction += score;
+  }
+  return result;
+}
+
+double VerdictTable::Support(const size_t k,
+                             const std::vector<size_t>& others) const {
+  const SelectionResult weighed = Weigh(k, others);
+  return weighed.support - weighed.contradiction;
+}
+
+std::vector<size_t> VerdictTable::InOrderOfWeight() const {
+  std::vector<size_t> order(closures_.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  // Sums round the same.
+  std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
+    return IsBeforeByIds(closures_[a], closures_[b]);
+  });
+  std::vector<double> weight;
+  for (size_t k = 0; k < closures_.size(); ++k) {
+    const SelectionResult weighed = Weigh(k, order);
+    weight.push_back(closures_[k].score + weighed.support -
+                     weighed.contradiction);
+  }
+  std::stable_sort(
+      order.begin(), order.end(),
+      [&](const size_t a, const size_t b) { return weight[a] > weight[b]; });
+  return order;
+}
+
 std::vector<SelectionResult> SelectConsistent(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry,
     const std::vector<PairPose>& closures) {
   CHECK_EQ(Validate(options), "");
-  const VerdictTable table(options, odometry, closures);
+  const VerdictTable table(closures, [&](const PairPose& a, const PairPose& b) {
+    return CheckCycle(options, odometry, a, b);
+  });
   std::vector<size_t> chosen;
   std::vector<SelectionResult> results(closures.size());
-  for (const size_t k : InOrderOfWeight(table, closures)) {
-    results[k] = WeighAgainst(table, closures, chosen, k);
+  for (const size_t k : table.InOrderOfWeight()) {
+    results[k] = table.Weigh(k, chosen);
     if (results[k].contradiction > results[k].support) {
       results[k].selection = Selection::kInconsistent;
     } else {
@@ -229,13 +224,25 @@ std::vector<SelectionResult> SelectConsistent(
     }
   }
   for (const size_t k : chosen) {
-    results[k] = WeighAgainst(table, closures, chosen, k);
+    results[k] = table.Weigh(k, chosen);
     if (results[k].support < options.min_support &&
         closures[k].score < options.min_unsupported_score) {
       results[k].selection = Selection::kUnsupported;
     }
   }
   return results;
+}
+
+std::vector<SelectionResult> SelectConsistentBetween(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& reference_odometry,
+    const std::map<SubmapId, OdometryPose>& query_odometry,
+    const std::vector<PairPose>& pairs) {
+  std::map<SubmapId, OdometryPose> odometry = query_odometry;
+  for (const auto& [id, pose] : reference_odometry) odometry[Apart(id)] = pose;
+  std::vector<PairPose> renamed = pairs;
+  for (PairPose& pair : renamed) pair.reference = Apart(pair.reference);
+  return SelectConsistent(options, odometry, renamed);
 }
 
 }  // namespace cartographer_sdf

@@ -15,8 +15,9 @@
 #ifndef CARTOGRAPHER_SDF_CLOSING_CONSISTENCY_H_
 #define CARTOGRAPHER_SDF_CLOSING_CONSISTENCY_H_
 
+#include <cstddef>
+#include <functional>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,7 +48,11 @@ struct ConsistencyOptions {
 };
 [[nodiscard]] std::string Validate(const ConsistencyOptions& options);
 
-enum class CycleVerdict { kConsistent, kInconsistent, kUninformative };
+// Standard deviation of the translation by odometry after so much driving [m].
+[[nodiscard]] double DriftSigma(const ConsistencyOptions& options,
+                                double driven);
+
+enum class CycleVerdict { kUninformative, kConsistent, kInconsistent };
 
 // The cycle of two closures: each pair of their ends is joined by odometry
 // where it shares a trajectory; of the two ways to join them, the more certain.
@@ -69,12 +74,46 @@ struct SelectionResult {
   double contradiction = 0.;  // scores of the selected ones that do not
 };
 
+// What each two of several closures say of each other. A score below zero
+// counts as none.
+class VerdictTable {
+ public:
+  // `closures` outlives it; `check` is the same for either order of the two.
+  VerdictTable(const std::vector<PairPose>& closures,
+               const std::function<CycleVerdict(const PairPose&,
+                                                const PairPose&)>& check);
+
+  // Support and contradiction of closure k by the others; k itself is passed
+  // over.
+  [[nodiscard]] SelectionResult Weigh(size_t k,
+                                      const std::vector<size_t>& others) const;
+  // The one less the other.
+  [[nodiscard]] double Support(size_t k,
+                               const std::vector<size_t>& others) const;
+  // The closures that most others support come first, and set the frame in
+  // which later ones are judged. The same whatever the order given.
+  [[nodiscard]] std::vector<size_t> InOrderOfWeight() const;
+
+ private:
+  const std::vector<PairPose>& closures_;
+  std::vector<CycleVerdict> verdicts_;
+};
+
 // One result for each closure, in order; independent of the order. Quadratic
 // in the number of closures.
 [[nodiscard]] std::vector<SelectionResult> SelectConsistent(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry,
     const std::vector<PairPose>& closures);
+
+// SelectConsistent for pairs whose reference lies in one map and whose query in
+// another, joined by the odometry of each. Trajectories of the two maps are
+// different ones even where their ids are equal.
+[[nodiscard]] std::vector<SelectionResult> SelectConsistentBetween(
+    const ConsistencyOptions& options,
+    const std::map<SubmapId, OdometryPose>& reference_odometry,
+    const std::map<SubmapId, OdometryPose>& query_odometry,
+    const std::vector<PairPose>& pairs);
 
 }  // namespace cartographer_sdf
 

@@ -16,6 +16,16 @@
 namespace cartographer_sdf {
 namespace {
 
+// Every point equally certain.
+std::vector<SurfacePoint> ToSurfacePoints(const PointCloud2& point_cloud) {
+  std::vector<SurfacePoint> points;
+  points.reserve(point_cloud.size());
+  for (const Eigen::Vector2f& point : point_cloud) {
+    points.push_back({point.cast<double>(), 1.});
+  }
+  return points;
+}
+
 // The node's pose in the submap by its own scan; none where that can't be
 // believed.
 std::optional<Rigid2> RegisterNode(const ConstraintOptions& options,
@@ -51,9 +61,9 @@ void AppendConstraints(const ConstraintOptions& options, const SubmapId& submap,
   for (const auto& [node, T_other_node] : ChooseNodes(options, nodes)) {
     std::optional<Rigid2> T_submap_node = T_submap_other * T_other_node;
     const auto scan = scans.find(node);
-    if (scan != scans.end()) {
-      T_submap_node =
-          RegisterNode(options, surface, scan->second, *T_submap_node);
+    if (scan != scans.end() && !scan->second.empty()) {
+      T_submap_node = RegisterNode(
+          options, surface, ToSurfacePoints(scan->second), *T_submap_node);
     }
     if (!T_submap_node) continue;
     constraints->push_back(
@@ -106,16 +116,6 @@ InsertedNodes ChooseNodes(const ConstraintOptions& options,
     chosen.insert(all[k]);
   }
   return chosen;
-}
-
-std::vector<SurfacePoint> ToScan(
-    const std::vector<Eigen::Vector2f>& point_cloud) {
-  std::vector<SurfacePoint> scan;
-  scan.reserve(point_cloud.size());
-  for (const Eigen::Vector2f& point : point_cloud) {
-    scan.push_back({point.cast<double>(), 1.});
-  }
-  return scan;
 }
 
 std::vector<Constraint> GenerateConstraints(

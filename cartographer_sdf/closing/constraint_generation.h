@@ -11,7 +11,6 @@
 #ifndef CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GENERATION_H_
 #define CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GENERATION_H_
 
-#include <Eigen/Core>
 #include <map>
 #include <string>
 #include <vector>
@@ -54,10 +53,8 @@ using InsertedNodes = std::map<NodeId, Rigid2>;
 [[nodiscard]] InsertedNodes ChooseNodes(const ConstraintOptions& options,
                                         const InsertedNodes& nodes);
 
-// Scans in their nodes' frames, every point equally certain.
-using ScansByNode = std::map<NodeId, std::vector<SurfacePoint>>;
-[[nodiscard]] std::vector<SurfacePoint> ToScan(
-    const std::vector<Eigen::Vector2f>& point_cloud);
+// Filtered range data of nodes, in their frames. One that is empty is none.
+using ScansByNode = std::map<NodeId, PointCloud2>;
 
 // Inter-submap constraints of one pair of submaps. Nodes whose scans do not fit
 // yield none; nodes without a scan are taken as local SLAM placed them.

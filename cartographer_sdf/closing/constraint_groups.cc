@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <optional>
 #include <utility>
 
+#include "cartographer_sdf/closing/constraint_generation.h"
 #include "cartographer_sdf/geometry/distinct_poses.h"
 #include "glog/logging.h"
 
@@ -24,14 +24,8 @@ struct Insertion {
 
 std::map<NodeId, std::vector<Insertion>> Insertions(
     const PoseGraph& pose_graph) {
-  std::map<SubmapId, std::map<NodeId, Rigid2>> nodes_of;
-  for (const Constraint& constraint : pose_graph.constraints) {
-    if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;
-    nodes_of[constraint.submap].emplace(constraint.node,
-                                        constraint.T_submap_node);
-  }
   std::map<NodeId, std::vector<Insertion>> insertions;
-  for (const auto& [submap, nodes] : nodes_of) {
+  for (const auto& [submap, nodes] : FindInsertedNodes(pose_graph)) {
     int rank = 0;
     for (const auto& [node, T_submap_node] : nodes) {
       insertions[node].push_back(

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "cartographer_sdf/pose_graph/odometry_weights.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -35,31 +34,6 @@ ClosureStatus StatusOf(const Selection selection) {
       return ClosureStatus::kUnsupported;
   }
   LOG(FATAL) << "not a selection: " << static_cast<int>(selection);
-}
-
-// The scans that the constraints of the selected closures register.
-ScansByNode ScansToRegister(const ConstraintOptions& options,
-                            const std::map<SubmapId, InsertedNodes>& nodes,
-                            const std::map<NodeId, PointCloud2>& point_clouds,
-                            const std::vector<Closure>& closures) {
-  ScansByNode scans;
-  for (const Closure& closure : closures) {
-    if (closure.status != ClosureStatus::kSelected) continue;
-    for (const SubmapId& submap :
-         {closure.match.pair.reference, closure.match.pair.query}) {
-      const auto inserted = nodes.find(submap);
-      if (inserted == nodes.end()) continue;
-      for (const auto& entry : ChooseNodes(options, inserted->second)) {
-        const auto cloud = point_clouds.find(entry.first);
-        if (cloud == point_clouds.end() || cloud->second.empty() ||
-            scans.count(entry.first) > 0) {
-          continue;
-        }
-        scans.emplace(entry.first, ToScan(cloud->second));
-      }
-    }
-  }
-  return scans;
 }
 
 }  // namespace
@@ -156,12 +130,9 @@ ClosedGraph CloseGraph(const ClosingOptions& options, const GraphToClose& graph,
   SelectClosures(options.consistency, *graph.odometry, result.torn_submaps,
                  &result.closures);
   clock->Begin("generate constraints");
-  const std::map<SubmapId, InsertedNodes> nodes =
-      FindInsertedNodes(*graph.pose_graph);
-  GenerateConstraints(options.constraints, nodes, *graph.places,
-                      ScansToRegister(options.constraints, nodes,
-                                      *graph.point_clouds, result.closures),
-                      executor, &result.closures);
+  GenerateConstraints(options.constraints, FindInsertedNodes(*graph.pose_graph),
+                      *graph.places, *graph.point_clouds, executor,
+                      &result.closures);
   OptimizedGraph optimized = OptimizeAndRejectOutliers(
       options.outlier_rejection, options.optimization, frozen_trajectories,
       *graph.pose_graph, &result.closures, clock->Begin("optimise"));

@@ -22,7 +22,6 @@
 #include "cartographer_sdf/closing/torn_submaps.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/stage_clock.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
@@ -39,7 +38,7 @@ struct ClosingOptions {
   ConsistencyOptions consistency;
   ConstraintOptions constraints;
   OptimizationOptions optimization;
-  // Whether odometry weights that the map itself shows (odometry_weights.h)
+  // Whether odometry weights that the map itself shows (optimization.h)
   // take the place of those of `optimization`.
   bool infer_odometry_weights = true;
   OutlierRejectionOptions outlier_rejection;

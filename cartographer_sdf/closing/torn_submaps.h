@@ -9,7 +9,6 @@
 
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/progress.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/verification/tear.h"
 

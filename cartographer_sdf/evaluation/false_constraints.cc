@@ -80,9 +80,6 @@ class Forger {
         map_(map),
         nodes_(FindInsertedNodes(map.state.pose_graph)),
         random_(seed) {
-    for (const auto& [node, cloud] : map.point_clouds) {
-      scans_.emplace(node, ToScan(cloud));
-    }
     for (auto i = map.places.begin(); i != map.places.end(); ++i) {
       for (auto j = std::next(i); j != map.places.end(); ++j) {
         const IdPair ids{i->first, j->first};
@@ -257,7 +254,7 @@ class Forger {
         const std::optional<Rigid2> pose = BestWrong(ids, Guesses(kind, ids));
         if (!pose) continue;
         std::vector<Constraint> constraints =
-            MakeConstraints({ids.first, ids.second, *pose}, scans_);
+            MakeConstraints({ids.first, ids.second, *pose}, map_.point_clouds);
         if (!constraints.empty()) return constraints;
         // Other kinds would guess the same again.
         if (kind != FalseKind::kCorridor) break;
@@ -269,7 +266,7 @@ class Forger {
   std::vector<Constraint> ForgeTwin() {
     while (next_alias_ < aliases_.size()) {
       std::vector<Constraint> constraints =
-          MakeConstraints(aliases_[next_alias_++], scans_);
+          MakeConstraints(aliases_[next_alias_++], map_.point_clouds);
       if (!constraints.empty()) return constraints;
     }
     return {};
@@ -279,7 +276,7 @@ class Forger {
   std::vector<Constraint> ForgeRow() {
     while (next_alias_ < aliases_.size()) {
       const PairPose& first = aliases_[next_alias_++];
-      std::vector<Constraint> row = MakeConstraints(first, scans_);
+      std::vector<Constraint> row = MakeConstraints(first, map_.point_clouds);
       if (row.empty()) continue;
       size_t num_pairs = 1;
       for (int i = -kRowReach; i <= kRowReach; ++i) {
@@ -288,7 +285,7 @@ class Forger {
           const std::optional<PairPose> pair = Neighbours(first, i, j);
           if (!pair) continue;
           const std::vector<Constraint> constraints =
-              MakeConstraints(*pair, scans_);
+              MakeConstraints(*pair, map_.point_clouds);
           row.insert(row.end(), constraints.begin(), constraints.end());
           if (!constraints.empty()) ++num_pairs;
         }
@@ -348,7 +345,6 @@ class Forger {
   const RecognitionOptions& recognition_;
   const ConstraintOptions constraint_options_;
   const DescribedMap& map_;
-  ScansByNode scans_;
   const std::map<SubmapId, InsertedNodes> nodes_;
   RandomNumbers random_;
   // Pairs that see one place by the map, and that do not.

@@ -4,7 +4,6 @@
 #include "cartographer_sdf/file/text_file.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -55,26 +54,20 @@ absl::StatusOr<std::vector<size_t>> FindColumns(
 
 absl::Status AppendField(const std::string& path, const CsvColumn& column,
                          const std::string& field, CsvRow* const row) {
-  switch (column.type) {
-    case CsvType::kInteger: {
-      int value = 0;
-      if (!absl::SimpleAtoi(field, &value)) {
-        return LineError(
-            path, row->line,
-            absl::StrCat(Quoted(field), " is not an integer number"));
-      }
-      row->fields.emplace_back(value);
-      break;
+  if (column.type == CsvType::kWord) {
+    row->fields.emplace_back(field);
+  } else if (column.type == CsvType::kNumber) {
+    const absl::StatusOr<double> value = ParseNumber(path, row->line, field);
+    if (!value.ok()) return value.status();
+    row->fields.emplace_back(*value);
+  } else {
+    int value = 0;
+    if (!absl::SimpleAtoi(field, &value)) {
+      return LineError(
+          path, row->line,
+          absl::StrCat(Quoted(field), " is not an integer number"));
     }
-    case CsvType::kNumber: {
-      const absl::StatusOr<double> value = ParseNumber(path, row->line, field);
-      if (!value.ok()) return value.status();
-      row->fields.emplace_back(*value);
-      break;
-    }
-    case CsvType::kWord:
-      row->fields.emplace_back(field);
-      break;
+    row->fields.emplace_back(value);
   }
   return absl::OkStatus();
 }
@@ -146,11 +139,9 @@ absl::StatusOr<std::vector<CsvRow>> ReadCsv(
     CsvRow row;
     row.line = line->number;
     for (size_t k = 0; k != columns.size(); ++k) {
-      if (absl::Status status =
-              AppendField(path, columns[k], fields[(*positions)[k]], &row);
-          !status.ok()) {
-        return status;
-      }
+      const absl::Status status =
+          AppendField(path, columns[k], fields[(*positions)[k]], &row);
+      if (!status.ok()) return status;
     }
     rows.push_back(std::move(row));
   }

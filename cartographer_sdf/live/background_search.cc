@@ -4,13 +4,13 @@
 #include "cartographer_sdf/live/background_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
+#include "cartographer_sdf/execution/parallel_for.h"
+#include "cartographer_sdf/geometry/distinct_poses.h"
 #include "cartographer_sdf/geometry/evenly_spaced.h"
 #include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -18,11 +18,6 @@ namespace {
 // At most so many submaps of the map are held against the nodes of a trajectory
 // that was localised.
 constexpr size_t kMaxLocalizationClosures = 3;
-
-// The worker is one thread.
-void RunInOrder(const size_t n, const std::function<void(size_t)>& task) {
-  for (size_t k = 0; k < n; ++k) task(k);
-}
 
 // The host has cut beams without an echo to the length that it believes.
 ScanGridOptions GridOptions(const LiveLocalizationOptions& options) {
@@ -32,28 +27,12 @@ ScanGridOptions GridOptions(const LiveLocalizationOptions& options) {
   return grid;
 }
 
-bool IsSamePose(const LiveLocalizationOptions& options, const Rigid2& T_map_a,
-                const Rigid2& T_map_b) {
-  const Rigid2 T_a_b = T_map_a.Inverse() * T_map_b;
-  return T_a_b.translation().norm() <=
-             options.max_translation_difference_meters &&
-         std::abs(T_a_b.rotation()) <= options.max_rotation_difference;
-}
-
-// A map of the query alone.
-MapLayout LayoutOfQuery(const Place& place) {
-  PoseGraph graph;
-  graph.submap_poses[place.id] = Rigid2();
-  return MakeMapLayout(graph, {}, {{place.id, place}});
-}
-
 void AddNodes(const SubmapId& submap, const std::vector<SubmapNode>& nodes,
               std::map<SubmapId, InsertedNodes>* const inserted,
               ScansByNode* const scans) {
   for (const SubmapNode& node : nodes) {
     (*inserted)[submap].emplace(node.id, node.T_submap_node);
-    std::vector<SurfacePoint> scan = NodeScan(*node.data);
-    if (!scan.empty()) scans->emplace(node.id, std::move(scan));
+    scans->emplace(node.id, NodeScan(*node.data));
   }
 }
 
@@ -68,10 +47,6 @@ std::vector<SubmapNode> ThinOut(const ConstraintOptions& options,
   }
   return kept;
 }
-
-BackgroundSearch::LocalSearch::LocalSearch(
-    const LiveLocalizationOptions& options)
-    : grid(GridOptions(options), options.window_meters) {}
 
 BackgroundSearch::BackgroundSearch(const LiveOptions& options)
     : options_(options), recognizer_(options.retrieval, options.match) {}
@@ -119,12 +94,16 @@ void BackgroundSearch::GenerateConstraints(
     }
   }
   cartographer_sdf::GenerateConstraints(options_.constraints, inserted,
-                                        places(), scans, &RunInOrder, closures);
+                                        places(), scans, MakeExecutor(1),
+                                        closures);
 }
 
 void BackgroundSearch::StartLocalizing(const int trajectory_id) {
   local_searches_.erase(trajectory_id);
-  local_searches_.emplace(trajectory_id, options_.localization);
+  const LiveLocalizationOptions& options = options_.localization;
+  local_searches_.emplace(
+      trajectory_id,
+      LocalSearch{{GridOptions(options), options.window_meters}, {}, {}, 0});
 }
 
 void BackgroundSearch::StopLocalizing(const int trajectory_id) {
@@ -159,7 +138,9 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
       Describe({trajectory_id, kGrowingSubmapIndex}, *grid);
   if (!place) return query;
   const std::map<SubmapId, Place> query_places = {{place->id, *place}};
-  const MapLayout query_layout = LayoutOfQuery(*place);
+  PoseGraph query_graph;
+  query_graph.submap_poses[place->id] = Rigid2();
+  const MapLayout query_layout = MakeMapLayout(query_graph, {}, query_places);
   const LiveLocalizationOptions& options = options_.localization;
   query.localization = cartographer_sdf::Localize(
       options.localizer, options_.consistency, options_.match,
@@ -174,7 +155,7 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
         query.num_candidates = recognition.num_candidates;
         return std::move(recognition.matches);
       },
-      &RunInOrder);
+      MakeExecutor(1));
   CountCertain(query.T_local_query, &search, &query);
   if (query.num_certain >= options.min_num_queries) {
     CloseWithMap(search, *place, &query);
@@ -193,8 +174,10 @@ void BackgroundSearch::CountCertain(const Rigid2& T_local_query,
   const Rigid2& T_map_query = *query->localization.T_map_query;
   const bool is_same =
       search->T_map_local &&
-      IsSamePose(options_.localization, *search->T_map_local * T_local_query,
-                 T_map_query);
+      AreNear(*search->T_map_local * T_local_query, T_map_query,
+              Eigen::Vector2d::Zero(),
+              {options_.localization.max_translation_difference_meters,
+               options_.localization.max_rotation_difference});
   search->num_certain = is_same ? search->num_certain + 1 : 1;
   search->T_map_local = T_map_query * T_local_query.Inverse();
   query->num_certain = search->num_certain;
@@ -214,9 +197,6 @@ void BackgroundSearch::CloseWithMap(const LocalSearch& search,
   std::map<SubmapId, InsertedNodes> inserted;
   ScansByNode scans;
   AddNodes(place.id, nodes, &inserted, &scans);
-  for (const SubmapNode& node : nodes) {
-    query->gravity_alignments[node.id] = node.data->gravity_alignment;
-  }
   const Localization& localization = query->localization;
   std::vector<const Match*> votes;
   for (const size_t vote : localization.placements.front().votes) {

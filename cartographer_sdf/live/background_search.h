@@ -84,10 +84,8 @@ class BackgroundSearch {
     int num_certain = 0;
     size_t num_candidates = 0;
     // Once enough queries agree: the best matches of the answer as closures
-    // with constraints of the trajectory's nodes, and the nodes' gravity
-    // alignments.
+    // with constraints of the trajectory's nodes.
     std::vector<Closure> closures;
-    std::map<NodeId, Eigen::Quaterniond> gravity_alignments;
   };
   // In the submaps of the layout, those that are remembered. The trajectory has
   // scans.
@@ -95,7 +93,6 @@ class BackgroundSearch {
 
  private:
   struct LocalSearch {
-    explicit LocalSearch(const LiveLocalizationOptions& options);
     GrowingGrid grid;
     // One for each scan of the grid, in their order.
     std::deque<NodeData> nodes;

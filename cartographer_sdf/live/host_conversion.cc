@@ -3,24 +3,40 @@
 
 #include "cartographer_sdf/live/host_conversion.h"
 
-#include <memory>
-#include <string>
 #include <utility>
 
 #include "cartographer/mapping/2d/submap_2d.h"
 #include "cartographer/transform/transform.h"
 #include "cartographer_sdf/pbstream/grid_conversion.h"
 #include "cartographer_sdf/serialized_state.pb.h"
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 
 namespace mapping = cartographer::mapping;
 namespace transform = cartographer::transform;
 
+namespace {
+
+PointCloud2 Flatten(const cartographer::sensor::PointCloud& cloud,
+                    const Eigen::Vector2f& origin) {
+  PointCloud2 points;
+  points.reserve(cloud.size());
+  for (const cartographer::sensor::RangefinderPoint& point : cloud) {
+    points.push_back(point.position.head<2>() - origin);
+  }
+  return points;
+}
+
+}  // namespace
+
 Rigid2 FromHost(const transform::Rigid3d& host_pose) {
   const transform::Rigid2d pose = transform::Project2D(host_pose);
   return Rigid2(pose.translation(), pose.rotation().angle());
+}
+
+transform::Rigid3d ToHost(const Rigid2& pose) {
+  return transform::Embed3D(transform::Rigid2d(
+      pose.translation(), Eigen::Rotation2Dd(pose.rotation())));
 }
 
 SubmapId FromHost(const mapping::SubmapId& id) {
@@ -44,14 +60,9 @@ Rigid2 LocalNodePose(const mapping::TrajectoryNode::Data& node) {
                                         node.gravity_alignment.inverse()));
 }
 
-std::vector<SurfacePoint> NodeScan(const mapping::TrajectoryNode::Data& node) {
-  std::vector<SurfacePoint> points;
-  points.reserve(node.filtered_gravity_aligned_point_cloud.size());
-  for (const cartographer::sensor::RangefinderPoint& point :
-       node.filtered_gravity_aligned_point_cloud) {
-    points.push_back({point.position.head<2>().cast<double>(), 1.});
-  }
-  return points;
+PointCloud2 NodeScan(const mapping::TrajectoryNode::Data& node) {
+  return Flatten(node.filtered_gravity_aligned_point_cloud,
+                 Eigen::Vector2f::Zero());
 }
 
 DrivenScan MakeDrivenScan(const mapping::NodeId& id,
@@ -59,28 +70,18 @@ DrivenScan MakeDrivenScan(const mapping::NodeId& id,
                           const cartographer::sensor::RangeData& range_data,
                           const double distance_driven) {
   const Eigen::Vector2f origin = range_data.origin.head<2>();
-  const auto from_origin =
-      [&origin](const cartographer::sensor::PointCloud& cloud) {
-        std::vector<Eigen::Vector2f> points;
-        points.reserve(cloud.size());
-        for (const cartographer::sensor::RangefinderPoint& point : cloud) {
-          points.push_back(point.position.head<2>() - origin);
-        }
-        return points;
-      };
-  return DrivenScan{
-      FromHost(id), LocalNodePose(node), Rigid2(origin.cast<double>(), 0.),
-      Scan{from_origin(range_data.returns), from_origin(range_data.misses)},
-      distance_driven};
+  return DrivenScan{FromHost(id), LocalNodePose(node),
+                    Rigid2(origin.cast<double>(), 0.),
+                    Scan{Flatten(range_data.returns, origin),
+                         Flatten(range_data.misses, origin)},
+                    distance_driven};
 }
 
 HostConstraint ToHost(const Constraint& constraint,
                       const Eigen::Quaterniond& gravity_alignment) {
   // (submap <- tracking frame of the node)
   const transform::Rigid3d zbar_ij =
-      transform::Embed3D(transform::Rigid2d(
-          constraint.T_submap_node.translation(),
-          Eigen::Rotation2Dd(constraint.T_submap_node.rotation()))) *
+      ToHost(constraint.T_submap_node) *
       transform::Rigid3d::Rotation(gravity_alignment);
   return HostConstraint{
       ToHost(constraint.submap),

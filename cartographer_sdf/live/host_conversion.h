@@ -21,7 +21,6 @@
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/localization/growing_grid.h"
-#include "cartographer_sdf/place/surface_model.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
@@ -31,6 +30,7 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
 // Drops z, roll and pitch.
 [[nodiscard]] Rigid2 FromHost(
     const cartographer::transform::Rigid3d& host_pose);
+[[nodiscard]] cartographer::transform::Rigid3d ToHost(const Rigid2& pose);
 [[nodiscard]] SubmapId FromHost(const cartographer::mapping::SubmapId& id);
 [[nodiscard]] NodeId FromHost(const cartographer::mapping::NodeId& id);
 [[nodiscard]] cartographer::mapping::SubmapId ToHost(const SubmapId& id);
@@ -40,7 +40,7 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
 [[nodiscard]] Rigid2 LocalNodePose(
     const cartographer::mapping::TrajectoryNode::Data& node);
 // The scan that the host matches, in the gravity-aligned node frame.
-[[nodiscard]] std::vector<SurfacePoint> NodeScan(
+[[nodiscard]] PointCloud2 NodeScan(
     const cartographer::mapping::TrajectoryNode::Data& node);
 
 // `range_data` lies in the trajectory's local frame; its points may be at any

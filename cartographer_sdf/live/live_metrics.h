@@ -2,24 +2,51 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What is counted through the host's metrics, of all builders of the process
-// together. Counts nothing before somebody registers.
+// together.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_LIVE_METRICS_H_
 #define CARTOGRAPHER_SDF_LIVE_LIVE_METRICS_H_
 
+#include <map>
+
+#include "cartographer/metrics/counter.h"
+#include "cartographer/metrics/gauge.h"
+#include "cartographer/metrics/histogram.h"
 #include "cartographer_sdf/live/map_builder.h"
 #include "cartographer_sdf/verification/verification.h"
 
 namespace cartographer_sdf {
 
-void SetNumPlaces(double num_places);
-void CountDescribedSubmap(double seconds);
-void CountQuery(double seconds, double num_candidates);
-void CountMatch(Verdict verdict);
-// Called whenever a closure meets its fate.
-void CountClosure(ClosureStatus status);
-void CountConstraints(double num_constraints);
-void CountLocalization(LocalizationVerdict verdict);
+// One counter for each outcome.
+template <typename Outcome>
+struct OutcomeCounters {
+  std::map<Outcome, cartographer::metrics::Counter*> counters;
+
+  void Increment(const Outcome outcome) const {
+    const auto counter = counters.find(outcome);
+    if (counter != counters.end()) counter->second->Increment();
+  }
+};
+
+// Described where they are registered, in live_metrics.cc.
+struct LiveMetrics {
+  using Counter = cartographer::metrics::Counter;
+  using Histogram = cartographer::metrics::Histogram;
+
+  cartographer::metrics::Gauge* places = cartographer::metrics::Gauge::Null();
+  Counter* submaps = Counter::Null();
+  Counter* queries = Counter::Null();
+  Counter* candidates = Counter::Null();
+  Counter* constraints = Counter::Null();
+  Histogram* describe_seconds = Histogram::Null();
+  Histogram* query_seconds = Histogram::Null();
+  OutcomeCounters<Verdict> matches;
+  OutcomeCounters<ClosureStatus> closures;
+  OutcomeCounters<LocalizationVerdict> localizations;
+};
+
+// Those of the process, which count nothing before RegisterMetrics().
+[[nodiscard]] LiveMetrics& TheMetrics();
 
 }  // namespace cartographer_sdf
 

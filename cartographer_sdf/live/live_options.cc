@@ -43,8 +43,6 @@ constexpr char kTableName[] = "SDF_LIVE";
 
 }  // namespace
 
-LiveOptions::LiveOptions() { retrieval.max_num_candidates = 15; }
-
 std::string Validate(const LiveLocalizationOptions& options) {
   if (!(options.query_interval_meters > 0.)) {
     return "query_interval_meters must be positive";

@@ -70,7 +70,7 @@ struct LiveOptions {
   ConstraintOptions constraints;
   LiveLocalizationOptions localization;
 
-  LiveOptions();
+  LiveOptions() { retrieval.max_num_candidates = 15; }
 };
 [[nodiscard]] std::string Validate(const LiveOptions& options);
 

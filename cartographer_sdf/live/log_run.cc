@@ -3,12 +3,11 @@
 
 #include "cartographer_sdf/live/log_run.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -19,15 +18,17 @@
 #include "absl/base/thread_annotations.h"
 #include "absl/strings/str_cat.h"
 #include "absl/synchronization/mutex.h"
-#include "cartographer/common/time.h"
+#include "cartographer/common/configuration_file_resolver.h"
+#include "cartographer/common/lua_parameter_dictionary.h"
 #include "cartographer/mapping/map_builder.h"
 #include "cartographer/mapping/pose_graph.h"
+#include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer/sensor/imu_data.h"
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/live/worker.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/recording/motion.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -54,13 +55,6 @@ Time ToHostTime(const double unix_seconds) {
       cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000ll);
 }
 
-transform::Rigid3d ToHostPose(const Rigid2& pose) {
-  return transform::Rigid3d(
-      {pose.translation().x(), pose.translation().y(), 0.},
-      Eigen::Quaterniond(
-          Eigen::AngleAxisd(pose.rotation(), Eigen::Vector3d::UnitZ())));
-}
-
 // Every beam, as the host wants to see those that hit nothing, too. A range
 // beyond max_range frees the first metres of its way.
 sensor::TimedPointCloudData ToHostScan(const Recording& recording,
@@ -79,49 +73,23 @@ sensor::TimedPointCloudData ToHostScan(const Recording& recording,
   return data;
 }
 
-double WallSeconds() {
-  return std::chrono::duration<double>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
-// Of all threads.
-double ProcessCpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) +
-           1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 // The host prints how an optimisation goes that somebody waits for; standard
 // output is not its to use.
-class SilentStandardOutput {
- public:
-  SilentStandardOutput() : buffer_(std::cout.rdbuf(nullptr)) {}
-  SilentStandardOutput(const SilentStandardOutput&) = delete;
-  SilentStandardOutput& operator=(const SilentStandardOutput&) = delete;
-  ~SilentStandardOutput() {
-    std::cout.rdbuf(buffer_);
-    std::cout.clear();
-  }
-
- private:
-  std::streambuf* const buffer_;
+struct SilentStandardOutput {
+  SilentStandardOutput() { std::cout.setstate(std::ios::failbit); }
+  ~SilentStandardOutput() { std::cout.clear(); }
 };
 
-// What the threads of one run share.
-class Clock {
- public:
-  Clock() : begin_wall_(WallSeconds()), begin_cpu_(ProcessCpuSeconds()) {}
-  [[nodiscard]] double wall() const { return WallSeconds() - begin_wall_; }
-  [[nodiscard]] double cpu() const { return ProcessCpuSeconds() - begin_cpu_; }
+// What the threads of one run share. CPU time is that of all threads [s].
+struct Clock {
+  const std::chrono::steady_clock::time_point begin =
+      std::chrono::steady_clock::now();
+  const std::clock_t begin_cpu = std::clock();
 
- private:
-  const double begin_wall_;
-  const double begin_cpu_;
+  [[nodiscard]] double wall() const { return SecondsSince(begin); }
+  [[nodiscard]] double cpu() const {
+    return static_cast<double>(std::clock() - begin_cpu) / CLOCKS_PER_SEC;
+  }
 };
 
 class Run {
@@ -263,7 +231,7 @@ class Run {
       }
       AddSensorData(
           builder, kOdometrySensor,
-          sensor::OdometryData{time, ToHostPose(sample.T_odometry_robot)});
+          sensor::OdometryData{time, ToHost(sample.T_odometry_robot)});
     }
     AddSensorData(builder, kRangeSensor, host_scan);
   }
@@ -273,9 +241,9 @@ class Run {
   template <typename SensorData>
   void AddSensorData(mapping::TrajectoryBuilderInterface* const builder,
                      const std::string& sensor, const SensorData& data) {
-    const double begin = WallSeconds();
+    const auto begin = std::chrono::steady_clock::now();
     builder->AddSensorData(sensor, data);
-    result_.sensor_seconds.push_back(WallSeconds() - begin);
+    result_.sensor_seconds.push_back(SecondsSince(begin));
   }
 
   // On the sensor thread.
@@ -303,14 +271,13 @@ class Run {
     const auto* const pose_graph =
         dynamic_cast<mapping::PoseGraph*>(map_builder_->pose_graph());
     if (pose_graph == nullptr) return false;
-    for (const std::vector<int>& component :
-         pose_graph->GetConnectedTrajectories()) {
-      if (std::find(component.begin(), component.end(), trajectory_id) !=
-          component.end()) {
-        return component.size() > 1;
-      }
-    }
-    return false;
+    const auto components = pose_graph->GetConnectedTrajectories();
+    return std::any_of(components.begin(), components.end(),
+                       [trajectory_id](const std::vector<int>& component) {
+                         return component.size() > 1 &&
+                                std::count(component.begin(), component.end(),
+                                           trajectory_id) > 0;
+                       });
   }
 
   // On the searcher's thread.
@@ -352,7 +319,39 @@ absl::Status CheckWritable(const std::string& path) {
   return absl::OkStatus();
 }
 
+// The reader wants every key of the returned table to be used. What belongs to
+// ROS is not ours to use, and what the two tables hold should stay checked.
+// Line numbers in messages stay right.
+std::string OnlyWhatIsUsed(const std::string& code) {
+  return absl::StrCat("local function file() ", code,
+                      "\nend\nlocal options = file()\nreturn {\n"
+                      "map_builder = options.map_builder,\n"
+                      "trajectory_builder = options.trajectory_builder }\n");
+}
+
 }  // namespace
+
+absl::StatusOr<HostOptions> LoadHostOptions(
+    const std::vector<std::string>& directories, const std::string& basename) {
+  auto resolver =
+      std::make_unique<cartographer::common::ConfigurationFileResolver>(
+          directories);
+  const std::string code = resolver->GetFileContentOrDie(basename);
+  cartographer::common::LuaParameterDictionary dictionary(OnlyWhatIsUsed(code),
+                                                          std::move(resolver));
+  HostOptions options;
+  options.map_builder = mapping::CreateMapBuilderOptions(
+      dictionary.GetDictionary("map_builder").get());
+  options.trajectory_builder = mapping::CreateTrajectoryBuilderOptions(
+      dictionary.GetDictionary("trajectory_builder").get());
+  if (!options.map_builder.use_trajectory_builder_2d()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(basename,
+                     ": MAP_BUILDER.use_trajectory_builder_2d is not "
+                     "true, and 3D cannot be done"));
+  }
+  return options;
+}
 
 double FromHostTime(const Time time) {
   return static_cast<double>(
@@ -382,15 +381,14 @@ absl::StatusOr<LogRunResult> RunLog(
                      " scans is too short to be driven"));
   }
   if (options.output_path.has_value()) {
-    if (absl::Status status = CheckWritable(*options.output_path);
-        !status.ok()) {
-      return status;
-    }
+    const absl::Status status = CheckWritable(*options.output_path);
+    if (!status.ok()) return status;
   }
   // Before the run, as its end prints, too.
   const SilentStandardOutput silent;
   Run run(recording, options);
-  if (absl::Status status = run.LoadMap(); !status.ok()) return status;
+  absl::Status status = run.LoadMap();
+  if (!status.ok()) return status;
   // The host could not read a map again with a trajectory that has no nodes.
   if (!run.Drive(on_progress)) {
     return absl::InvalidArgumentError(
@@ -399,7 +397,8 @@ absl::StatusOr<LogRunResult> RunLog(
   }
   run.Finish();
   LogRunResult result = run.TakeResult();
-  if (absl::Status status = run.WriteMap(); !status.ok()) return status;
+  status = run.WriteMap();
+  if (!status.ok()) return status;
   return result;
 }
 

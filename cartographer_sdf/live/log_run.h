@@ -15,13 +15,29 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer/common/time.h"
+#include "cartographer/mapping/proto/map_builder_options.pb.h"
+#include "cartographer/mapping/proto/trajectory_builder_options.pb.h"
 #include "cartographer_sdf/geometry/rigid2.h"
-#include "cartographer_sdf/live/host_options.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/map_builder.h"
 #include "cartographer_sdf/recording/recording.h"
 
 namespace cartographer_sdf {
+
+struct HostOptions {
+  cartographer::mapping::proto::MapBuilderOptions map_builder;
+  cartographer::mapping::proto::TrajectoryBuilderOptions trajectory_builder;
+};
+
+// Cartographer's own options: the tables map_builder and trajectory_builder of
+// what the file returns, as in a file of cartographer_ros, whose other keys are
+// passed over. It and what it includes is looked for in the directories, then
+// where Cartographer is installed.
+//
+// Cartographer's reader knows no errors: a missing file and whatever is wrong
+// inside of one is LOG(FATAL). Only options for 3D are an error here.
+[[nodiscard]] absl::StatusOr<HostOptions> LoadHostOptions(
+    const std::vector<std::string>& directories, const std::string& basename);
 
 // Seconds of Unix time.
 [[nodiscard]] double FromHostTime(cartographer::common::Time time);

@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "cartographer_sdf/live/guarded_pose_graph.h"
 #include "cartographer_sdf/live/searcher.h"
 #include "glog/logging.h"
 
@@ -13,6 +12,155 @@ namespace cartographer_sdf {
 namespace {
 
 namespace mapping = cartographer::mapping;
+namespace sensor = cartographer::sensor;
+namespace transform = cartographer::transform;
+
+// The host's pose graph as our users get it: everything is forwarded, and what
+// may take submaps or nodes away is announced before.
+class GuardedPoseGraph : public mapping::PoseGraph {
+ public:
+  // Neither is owned; both outlive this.
+  GuardedPoseGraph(mapping::PoseGraph* host, Searcher* searcher)
+      : host_(host), searcher_(searcher) {}
+
+  // Announced.
+  void RunFinalOptimization() override { searcher_->RunFinalOptimization(); }
+  void DeleteTrajectory(const int trajectory_id) override {
+    searcher_->ForgetTrajectory(trajectory_id);
+    host_->DeleteTrajectory(trajectory_id);
+  }
+  void FinishTrajectory(const int trajectory_id) override {
+    searcher_->FinishTrajectory(trajectory_id, [this, trajectory_id] {
+      host_->FinishTrajectory(trajectory_id);
+    });
+  }
+  void AddTrimmer(std::unique_ptr<mapping::PoseGraphTrimmer> trimmer) override {
+    const Searcher::Announcement announcement(searcher_);
+    host_->AddTrimmer(std::move(trimmer));
+  }
+
+  // Forwarded.
+  mapping::MapById<mapping::SubmapId, SubmapData> GetAllSubmapData()
+      const override {
+    return host_->GetAllSubmapData();
+  }
+  SubmapData GetSubmapData(const mapping::SubmapId& submap_id) const override {
+    return host_->GetSubmapData(submap_id);
+  }
+  mapping::MapById<mapping::SubmapId, SubmapPose> GetAllSubmapPoses()
+      const override {
+    return host_->GetAllSubmapPoses();
+  }
+  transform::Rigid3d GetLocalToGlobalTransform(
+      const int trajectory_id) const override {
+    return host_->GetLocalToGlobalTransform(trajectory_id);
+  }
+  mapping::MapById<mapping::NodeId, mapping::TrajectoryNode>
+  GetTrajectoryNodes() const override {
+    return host_->GetTrajectoryNodes();
+  }
+  mapping::MapById<mapping::NodeId, mapping::TrajectoryNodePose>
+  GetTrajectoryNodePoses() const override {
+    return host_->GetTrajectoryNodePoses();
+  }
+  std::map<int, TrajectoryState> GetTrajectoryStates() const override {
+    return host_->GetTrajectoryStates();
+  }
+  std::map<std::string, transform::Rigid3d> GetLandmarkPoses() const override {
+    return host_->GetLandmarkPoses();
+  }
+  void SetLandmarkPose(const std::string& landmark_id,
+                       const transform::Rigid3d& global_pose,
+                       const bool frozen) override {
+    host_->SetLandmarkPose(landmark_id, global_pose, frozen);
+  }
+  bool IsTrajectoryFinished(const int trajectory_id) const override {
+    return host_->IsTrajectoryFinished(trajectory_id);
+  }
+  bool IsTrajectoryFrozen(const int trajectory_id) const override {
+    return host_->IsTrajectoryFrozen(trajectory_id);
+  }
+  std::map<int, TrajectoryData> GetTrajectoryData() const override {
+    return host_->GetTrajectoryData();
+  }
+  std::vector<Constraint> constraints() const override {
+    return host_->constraints();
+  }
+  mapping::proto::PoseGraph ToProto(
+      const bool include_unfinished_submaps) const override {
+    return host_->ToProto(include_unfinished_submaps);
+  }
+  void SetGlobalSlamOptimizationCallback(
+      GlobalSlamOptimizationCallback callback) override {
+    host_->SetGlobalSlamOptimizationCallback(std::move(callback));
+  }
+  void AddImuData(const int trajectory_id,
+                  const sensor::ImuData& imu_data) override {
+    host_->AddImuData(trajectory_id, imu_data);
+  }
+  void AddOdometryData(const int trajectory_id,
+                       const sensor::OdometryData& odometry_data) override {
+    host_->AddOdometryData(trajectory_id, odometry_data);
+  }
+  void AddFixedFramePoseData(const int trajectory_id,
+                             const sensor::FixedFramePoseData& data) override {
+    host_->AddFixedFramePoseData(trajectory_id, data);
+  }
+  void AddLandmarkData(const int trajectory_id,
+                       const sensor::LandmarkData& landmark_data) override {
+    host_->AddLandmarkData(trajectory_id, landmark_data);
+  }
+  void FreezeTrajectory(const int trajectory_id) override {
+    host_->FreezeTrajectory(trajectory_id);
+  }
+  void AddSubmapFromProto(const transform::Rigid3d& global_pose,
+                          const mapping::proto::Submap& submap) override {
+    host_->AddSubmapFromProto(global_pose, submap);
+  }
+  void AddNodeFromProto(const transform::Rigid3d& global_pose,
+                        const mapping::proto::Node& node) override {
+    host_->AddNodeFromProto(global_pose, node);
+  }
+  void SetTrajectoryDataFromProto(
+      const mapping::proto::TrajectoryData& data) override {
+    host_->SetTrajectoryDataFromProto(data);
+  }
+  void AddNodeToSubmap(const mapping::NodeId& node_id,
+                       const mapping::SubmapId& submap_id) override {
+    host_->AddNodeToSubmap(node_id, submap_id);
+  }
+  void AddSerializedConstraints(
+      const std::vector<Constraint>& constraints) override {
+    host_->AddSerializedConstraints(constraints);
+  }
+  std::vector<std::vector<int>> GetConnectedTrajectories() const override {
+    return host_->GetConnectedTrajectories();
+  }
+  sensor::MapByTime<sensor::ImuData> GetImuData() const override {
+    return host_->GetImuData();
+  }
+  sensor::MapByTime<sensor::OdometryData> GetOdometryData() const override {
+    return host_->GetOdometryData();
+  }
+  sensor::MapByTime<sensor::FixedFramePoseData> GetFixedFramePoseData()
+      const override {
+    return host_->GetFixedFramePoseData();
+  }
+  std::map<std::string, LandmarkNode> GetLandmarkNodes() const override {
+    return host_->GetLandmarkNodes();
+  }
+  void SetInitialTrajectoryPose(
+      const int from_trajectory_id, const int to_trajectory_id,
+      const transform::Rigid3d& pose,
+      const cartographer::common::Time time) override {
+    host_->SetInitialTrajectoryPose(from_trajectory_id, to_trajectory_id, pose,
+                                    time);
+  }
+
+ private:
+  mapping::PoseGraph* const host_;
+  Searcher* const searcher_;
+};
 
 class SearchingMapBuilder : public LiveMapBuilder {
  public:
@@ -49,8 +197,8 @@ class SearchingMapBuilder : public LiveMapBuilder {
     auto callback =
         [searcher = searcher_, forward = std::move(local_slam_result_callback)](
             const int trajectory_id, const cartographer::common::Time time,
-            const cartographer::transform::Rigid3d local_pose,
-            cartographer::sensor::RangeData range_data_in_local,
+            const transform::Rigid3d local_pose,
+            sensor::RangeData range_data_in_local,
             std::unique_ptr<
                 const mapping::TrajectoryBuilderInterface::InsertionResult>
                 insertion_result) {
@@ -106,23 +254,14 @@ class SearchingMapBuilder : public LiveMapBuilder {
   std::map<int, int> LoadState(
       cartographer::io::ProtoStreamReaderInterface* const reader,
       const bool load_frozen_state) override {
-    std::map<int, int> trajectory_ids;
-    {
-      const Searcher::Announcement announcement(searcher_.get());
-      trajectory_ids = host_->LoadState(reader, load_frozen_state);
-    }
-    searcher_->OnStateLoaded(trajectory_ids, load_frozen_state, "");
-    return trajectory_ids;
+    return Load(load_frozen_state, "",
+                [&] { return host_->LoadState(reader, load_frozen_state); });
   }
   std::map<int, int> LoadStateFromFile(const std::string& filename,
                                        const bool load_frozen_state) override {
-    std::map<int, int> trajectory_ids;
-    {
-      const Searcher::Announcement announcement(searcher_.get());
-      trajectory_ids = host_->LoadStateFromFile(filename, load_frozen_state);
-    }
-    searcher_->OnStateLoaded(trajectory_ids, load_frozen_state, filename);
-    return trajectory_ids;
+    return Load(load_frozen_state, filename, [&] {
+      return host_->LoadStateFromFile(filename, load_frozen_state);
+    });
   }
   int num_trajectory_builders() const override {
     return host_->num_trajectory_builders();
@@ -150,6 +289,17 @@ class SearchingMapBuilder : public LiveMapBuilder {
   }
 
  private:
+  std::map<int, int> Load(const bool is_frozen, const std::string& path,
+                          const std::function<std::map<int, int>()>& load) {
+    std::map<int, int> trajectory_ids;
+    {
+      const Searcher::Announcement announcement(searcher_.get());
+      trajectory_ids = load();
+    }
+    searcher_->OnStateLoaded(trajectory_ids, is_frozen, path);
+    return trajectory_ids;
+  }
+
   std::shared_ptr<Searcher> searcher_;
   std::unique_ptr<mapping::MapBuilderInterface> host_;
   // Null where the pose graph is remote.

@@ -14,15 +14,9 @@ namespace cartographer_sdf {
 namespace {
 
 namespace mapping = cartographer::mapping;
-using InsertionResult = mapping::TrajectoryBuilderInterface::InsertionResult;
 
 // Durations of the latest so many callbacks are kept for the summary.
 constexpr size_t kMaxNumDurations = 200000;
-
-double SecondsSince(const std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
 
 // Not in the graph, and nothing speaks against it getting there yet.
 bool IsWaiting(const ClosureStatus status) {
@@ -48,13 +42,6 @@ class Hook : public mapping::PoseGraphTrimmer {
 };
 
 }  // namespace
-
-Searcher::Announcement::Announcement(Searcher* const searcher)
-    : searcher_(searcher) {
-  searcher_->Announce();
-}
-
-Searcher::Announcement::~Announcement() { searcher_->Settle(); }
 
 Searcher::Searcher(const LiveOptions& options,
                    mapping::PoseGraph* const pose_graph,
@@ -138,12 +125,10 @@ void Searcher::OnLocalSlamResult(
     CollectScan(trajectory_id, range_data, *insertion, &trajectory);
   }
   const double seconds = SecondsSince(begin);
-  if (callback_seconds_.size() < kMaxNumDurations) {
-    callback_seconds_.push_back(static_cast<float>(seconds));
-  } else {
-    callback_seconds_[static_cast<size_t>(summary_.num_callbacks) %
-                      kMaxNumDurations] = static_cast<float>(seconds);
-  }
+  callback_seconds_.resize(
+      std::min(callback_seconds_.size() + 1, kMaxNumDurations));
+  callback_seconds_[static_cast<size_t>(summary_.num_callbacks) %
+                    kMaxNumDurations] = static_cast<float>(seconds);
   ++summary_.num_callbacks;
   summary_.callback_mean_seconds +=
       seconds;  // their sum, until it is asked for
@@ -219,37 +204,31 @@ void Searcher::FinishTrajectory(const int trajectory_id,
     const Announcement announcement(this);
     forward();
   }
-  std::optional<LocalizationResult> ended;
-  {
-    const absl::MutexLock lock(&mutex_);
-    const auto found = trajectories_.find(trajectory_id);
-    const bool is_known = found != trajectories_.end();
-    if (is_shut_down_ || !is_known || found->second.is_finished) return;
-    Trajectory& trajectory = found->second;
-    trajectory.is_finished = true;
-    // From here on they don't change.
-    if (!trajectory.is_trimmed) {
-      for (const int index : trajectory.growing) {
-        ScheduleDescription({trajectory_id, index});
-      }
+  const absl::MutexLock lock(&mutex_);
+  const auto found = trajectories_.find(trajectory_id);
+  const bool is_known = found != trajectories_.end();
+  if (is_shut_down_ || !is_known || found->second.is_finished) return;
+  Trajectory& trajectory = found->second;
+  trajectory.is_finished = true;
+  // From here on they don't change.
+  if (!trajectory.is_trimmed) {
+    for (const int index : trajectory.growing) {
+      ScheduleDescription({trajectory_id, index});
     }
-    trajectory.growing.clear();
-    if (trajectory.is_searched && has_map_) {
-      trajectory.localization->verdict = LocalizationVerdict::kFinished;
-      ended = trajectory.localization;
-      worker_.Schedule(
-          [this, trajectory_id] { search_.StopLocalizing(trajectory_id); });
-      if (on_localization_) {
-        worker_.Schedule([this, result = *ended] { on_localization_(result); });
-      }
-    }
-    trajectory.is_searched = false;
-    trajectory.scans.clear();
   }
-  if (!ended) return;
-  CountLocalization(ended->verdict);
-  LOG(INFO) << "trajectory " << trajectory_id
-            << " ended before it was localised in the map";
+  trajectory.growing.clear();
+  if (trajectory.is_searched && has_map_) {
+    trajectory.localization->verdict = LocalizationVerdict::kFinished;
+    TheMetrics().localizations.Increment(LocalizationVerdict::kFinished);
+    worker_.Schedule([this, result = *trajectory.localization] {
+      search_.StopLocalizing(result.trajectory_id);
+      if (on_localization_) on_localization_(result);
+    });
+    LOG(INFO) << "trajectory " << trajectory_id
+              << " ended before it was localised in the map";
+  }
+  trajectory.is_searched = false;
+  trajectory.scans.clear();
 }
 
 void Searcher::ForgetTrajectory(const int trajectory_id) {
@@ -282,9 +261,7 @@ void Searcher::ForgetSubmap(const SubmapId& id) {
     search_.Forget(id);
     map_odometry_.erase(id);
     if (map_layout_) map_layout_->T_map_submap.erase(id);
-    SetNumPlaces(static_cast<double>(search_.places().size()));
-    const absl::MutexLock lock(&mutex_);
-    summary_.num_places = static_cast<int>(search_.places().size());
+    CountPlaces();
   });
 }
 
@@ -292,8 +269,8 @@ void Searcher::SetStatus(const ClosureStatus status,
                          LiveClosure* const closure) {
   if (closure->closure.status == status) return;
   closure->closure.status = status;
-  CountClosure(status);
-  if (status != ClosureStatus::kReady) closure->constraints.clear();
+  TheMetrics().closures.Increment(status);
+  if (status != ClosureStatus::kReady) closure->closure.constraints.clear();
 }
 
 void Searcher::LogClosure(const LiveClosure& closure) const {
@@ -312,11 +289,7 @@ void Searcher::OnStateLoaded(const std::map<int, int>& trajectory_ids,
                              const bool is_frozen, const std::string& path) {
   const absl::MutexLock lock(&mutex_);
   if (is_shut_down_) return;
-  for (const auto& [id_in_file, id] : trajectory_ids) {
-    Trajectory& trajectory = trajectories_[id];
-    trajectory.is_loaded = true;
-    trajectory.is_frozen = is_frozen;
-  }
+  for (const auto& entry : trajectory_ids) trajectories_[entry.second];
   if (pose_graph_ == nullptr) return;
   has_map_ = true;
   for (auto& [id, trajectory] : trajectories_) {
@@ -344,11 +317,6 @@ void Searcher::Shutdown() {
             << summary.worker_cpu_seconds << " s of the worker, at most "
             << 1e3 * summary.callback_p99_seconds
             << " ms added to 99 % of the local SLAM results";
-}
-
-bool Searcher::IsStopping() const {
-  const absl::MutexLock lock(&mutex_);
-  return is_shut_down_;
 }
 
 std::optional<LocalizationResult> Searcher::GetLocalization(

@@ -39,6 +39,9 @@ namespace cartographer_sdf {
 
 class Searcher : public std::enable_shared_from_this<Searcher> {
  public:
+  using InsertionResult =
+      cartographer::mapping::TrajectoryBuilderInterface::InsertionResult;
+
   // The pose graph, null where it is remote, outlives everything but the hooks,
   // which it owns.
   Searcher(const LiveOptions& options,
@@ -48,8 +51,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   // Around what starts a round or adds a trimmer.
   class Announcement {
    public:
-    explicit Announcement(Searcher* searcher);
-    ~Announcement();
+    explicit Announcement(Searcher* searcher) : searcher_(searcher) {
+      searcher_->Announce();
+    }
+    ~Announcement() { searcher_->Settle(); }
     Announcement(const Announcement&) = delete;
     Announcement& operator=(const Announcement&) = delete;
 
@@ -60,10 +65,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   void AddTrajectory(int trajectory_id, bool has_initial_pose, bool is_trimmed)
       ABSL_LOCKS_EXCLUDED(mutex_);
   // On the sensor thread. `insertion` may be null.
-  void OnLocalSlamResult(
-      int trajectory_id, const cartographer::sensor::RangeData& range_data,
-      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult*
-          insertion) ABSL_LOCKS_EXCLUDED(mutex_);
+  void OnLocalSlamResult(int trajectory_id,
+                         const cartographer::sensor::RangeData& range_data,
+                         const InsertionResult* insertion)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   void FinishTrajectory(int trajectory_id, const std::function<void()>& forward)
       ABSL_LOCKS_EXCLUDED(mutex_);
   // Before it is deleted.
@@ -104,9 +109,7 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     bool is_scheduled = false;
   };
   struct Trajectory {
-    bool is_live = false;    // nodes come through us
-    bool is_loaded = false;  // part of a map to be located in
-    bool is_frozen = false;
+    bool is_live = false;     // nodes come through us
     bool is_trimmed = false;  // its submaps go when it ends
     bool is_finished = false;
     int num_submaps = 0;
@@ -124,12 +127,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     std::vector<NodeWithScan> scans;  // not yet taken by the worker
     std::optional<LocalizationResult> localization;
   };
-  // A closure in the books; its status is the closure's, its constraints are in
-  // the host's form while they wait.
+  // A closure in the books; it has its constraints while they wait.
   struct LiveClosure {
     Closure closure;
     int num_constraints = 0;
-    std::vector<HostConstraint> constraints;
   };
   // What the worker needs to decide on closures, copied under the lock.
   struct ClosureSnapshot {
@@ -138,6 +139,12 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     std::map<SubmapId, OdometryPose> odometry;
     std::map<SubmapId, std::vector<SubmapNode>> nodes;
   };
+  // The trajectories that are known, and whether nodes of theirs come through
+  // us.
+  using AreLive = std::map<int, bool>;
+  using HostNodes =
+      cartographer::mapping::MapById<cartographer::mapping::NodeId,
+                                     cartographer::mapping::TrajectoryNode>;
   // Nodes of live trajectories, as a round shows them.
   struct NodeCounts {
     int64_t num_done = 0;
@@ -148,16 +155,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   void Settle() ABSL_LOCKS_EXCLUDED(mutex_);
 
   // Parts of OnLocalSlamResult.
-  void FollowSubmaps(
-      int trajectory_id,
-      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult&
-          insertion,
-      Trajectory* trajectory) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
-  void CollectScan(
-      int trajectory_id, const cartographer::sensor::RangeData& range_data,
-      const cartographer::mapping::TrajectoryBuilderInterface::InsertionResult&
-          insertion,
-      Trajectory* trajectory) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void FollowSubmaps(int trajectory_id, const InsertionResult& insertion,
+                     Trajectory* trajectory)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void CollectScan(int trajectory_id,
+                   const cartographer::sensor::RangeData& range_data,
+                   const InsertionResult& insertion, Trajectory* trajectory)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleDescription(const SubmapId& id)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void BeginSearch(int trajectory_id, Trajectory* trajectory)
@@ -172,21 +176,20 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   }
 
   // Parts of EnterRound.
-  NodeCounts CountNodes(const std::set<int>& live_trajectories,
-                        const std::set<int>& loaded_trajectories,
+  NodeCounts CountNodes(const AreLive& are_live,
                         const cartographer::mapping::Trimmable& graph);
-  std::vector<SubmapId> FindGone(const std::set<int>& live_trajectories,
-                                 const std::set<int>& loaded_trajectories,
+  std::vector<SubmapId> FindGone(const AreLive& are_live,
                                  const cartographer::mapping::Trimmable& graph);
   // Those of ready closures whose submaps and nodes exist.
   void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
-                   const std::function<bool(const NodeId&)>& has_node)
+                   const HostNodes& nodes)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  // Tasks of the worker.
-  void DescribeAndRecognize(const SubmapId& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  std::optional<Place> DescribeSubmap(const SubmapId& id)
+  // Tasks of the worker, and parts of them.
+  void CountPlaces() ABSL_LOCKS_EXCLUDED(mutex_);
+  void CountQuery(double seconds, size_t num_candidates)
       ABSL_LOCKS_EXCLUDED(mutex_);
+  void DescribeAndRecognize(const SubmapId& id) ABSL_LOCKS_EXCLUDED(mutex_);
   // Whether there is a new closure.
   bool AddClosures(const SubmapId& id,
                    const PlaceRecognizer::Recognition& recognition)
@@ -218,7 +221,6 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   bool RecordQuery(const BackgroundSearch::Query& query, double cpu_seconds,
                    LocalizationResult* result) ABSL_LOCKS_EXCLUDED(mutex_);
   void RefreshMapPoses() ABSL_LOCKS_EXCLUDED(mutex_);
-  [[nodiscard]] bool IsStopping() const ABSL_LOCKS_EXCLUDED(mutex_);
 
   const LiveOptions options_;
   cartographer::mapping::PoseGraph* const pose_graph_;

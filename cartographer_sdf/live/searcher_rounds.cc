@@ -10,7 +10,6 @@
 
 #include "cartographer_sdf/live/live_metrics.h"
 #include "cartographer_sdf/live/searcher.h"
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 
@@ -23,18 +22,18 @@ bool Searcher::IsHookObsolete(const int generation) const {
 
 void Searcher::EnterRound(mapping::Trimmable* const graph,
                           const int generation) {
-  std::set<int> live, loaded;
+  AreLive are_live;
   {
     const absl::MutexLock lock(&mutex_);
     if (is_shut_down_) return;
     for (const auto& [id, trajectory] : trajectories_) {
-      (trajectory.is_live ? live : loaded).insert(id);
+      are_live[id] = trajectory.is_live;
     }
   }
   // Without our mutex, so that sensor threads don't wait for it. No node is
   // added meanwhile, as the host's mutex is held.
-  const NodeCounts counts = CountNodes(live, loaded, *graph);
-  const std::vector<SubmapId> gone = FindGone(live, loaded, *graph);
+  const NodeCounts counts = CountNodes(are_live, *graph);
+  const std::vector<SubmapId> gone = FindGone(are_live, *graph);
   const absl::MutexLock lock(&mutex_);
   if (is_shut_down_) return;
   for (const SubmapId& id : gone) ForgetSubmap(id);
@@ -42,34 +41,30 @@ void Searcher::EnterRound(mapping::Trimmable* const graph,
       !MayInject()) {
     return;
   }
-  const auto& nodes = graph->GetTrajectoryNodes();
   InjectReady(
       [this](const SubmapId& id) {
         const auto submaps = submaps_in_graph_.find(id.trajectory);
         return submaps != submaps_in_graph_.end() &&
                submaps->second.count(id.index) > 0;
       },
-      [&nodes](const NodeId& id) {
-        const auto node = nodes.find(ToHost(id));
-        return node != nodes.end() && (*node).data.constant_data != nullptr;
-      });
+      graph->GetTrajectoryNodes());
 }
 
 // Work on a node ends with its intra-submap constraints.
-Searcher::NodeCounts Searcher::CountNodes(
-    const std::set<int>& live_trajectories,
-    const std::set<int>& loaded_trajectories, const mapping::Trimmable& graph) {
+Searcher::NodeCounts Searcher::CountNodes(const AreLive& are_live,
+                                          const mapping::Trimmable& graph) {
   const auto& nodes = graph.GetTrajectoryNodes();
   NodeCounts counts;
   std::map<int, int> newest, unknown;
   for (const int trajectory : nodes.trajectory_ids()) {
-    if (loaded_trajectories.count(trajectory) > 0) continue;
-    if (live_trajectories.count(trajectory) == 0) {
+    const auto is_live = are_live.find(trajectory);
+    if (is_live == are_live.end()) {
       // Not known to us: any of them may wait.
       counts.num_waiting +=
           static_cast<int64_t>(nodes.SizeOfTrajectoryOrZero(trajectory));
       continue;
     }
+    if (!is_live->second) continue;
     newest[trajectory] =
         (*std::prev(nodes.EndOfTrajectory(trajectory))).id.node_index;
     const int done = newest_node_done_.emplace(trajectory, -1).first->second;
@@ -94,16 +89,15 @@ Searcher::NodeCounts Searcher::CountNodes(
   return counts;
 }
 
-std::vector<SubmapId> Searcher::FindGone(
-    const std::set<int>& live_trajectories,
-    const std::set<int>& loaded_trajectories, const mapping::Trimmable& graph) {
+std::vector<SubmapId> Searcher::FindGone(const AreLive& are_live,
+                                         const mapping::Trimmable& graph) {
   std::vector<SubmapId> gone;
-  const auto compare = [&](const int trajectory, const bool is_live) {
+  for (const auto& [trajectory, is_live] : are_live) {
     std::set<int>& known = submaps_in_graph_[trajectory];
     // Loaded trajectories don't grow.
     if (!is_live && !known.empty() &&
         graph.num_submaps(trajectory) == static_cast<int>(known.size())) {
-      return;
+      continue;
     }
     std::set<int> now;
     for (const mapping::SubmapId& id : graph.GetSubmapIds(trajectory)) {
@@ -113,31 +107,31 @@ std::vector<SubmapId> Searcher::FindGone(
       if (now.count(index) == 0) gone.push_back({trajectory, index});
     }
     known = std::move(now);
-  };
-  for (const int trajectory : live_trajectories) compare(trajectory, true);
-  for (const int trajectory : loaded_trajectories) compare(trajectory, false);
+  }
   return gone;
 }
 
 void Searcher::InjectReady(
     const std::function<bool(const SubmapId&)>& has_submap,
-    const std::function<bool(const NodeId&)>& has_node) {
+    const HostNodes& nodes) {
   std::vector<HostConstraint> constraints;
   for (LiveClosure& closure : closures_) {
     if (closure.closure.status != ClosureStatus::kReady) continue;
-    size_t num_constraints = 0;
+    int num_constraints = 0;
     bool is_gone = false;
-    for (const HostConstraint& constraint : closure.constraints) {
-      const SubmapId submap = FromHost(constraint.submap_id);
-      is_gone = is_gone || gone_.count(submap) > 0;
-      if (!has_submap(submap) || !has_node(FromHost(constraint.node_id))) {
+    for (const Constraint& constraint : closure.closure.constraints) {
+      is_gone = is_gone || gone_.count(constraint.submap) > 0;
+      const auto node = nodes.find(ToHost(constraint.node));
+      if (!has_submap(constraint.submap) || node == nodes.end() ||
+          (*node).data.constant_data == nullptr) {
         continue;
       }
-      constraints.push_back(constraint);
+      constraints.push_back(
+          ToHost(constraint, (*node).data.constant_data->gravity_alignment));
       ++num_constraints;
     }
     if (num_constraints > 0) {
-      closure.num_constraints = static_cast<int>(num_constraints);
+      closure.num_constraints = num_constraints;
       SetStatus(ClosureStatus::kInGraph, &closure);
       ++summary_.num_injected;
     } else if (is_gone) {
@@ -148,7 +142,7 @@ void Searcher::InjectReady(
   }
   if (constraints.empty()) return;
   summary_.num_constraints += static_cast<int>(constraints.size());
-  CountConstraints(static_cast<double>(constraints.size()));
+  TheMetrics().constraints->Increment(static_cast<double>(constraints.size()));
   pose_graph_->AddSerializedConstraints(constraints);
 }
 
@@ -173,7 +167,7 @@ void Searcher::RunFinalOptimization() {
     const Announcement announcement(this);
     pose_graph_->RunFinalOptimization();
     const auto submaps = pose_graph_->GetAllSubmapPoses();
-    const auto nodes = pose_graph_->GetTrajectoryNodePoses();
+    const HostNodes nodes = pose_graph_->GetTrajectoryNodes();
     const absl::MutexLock lock(&mutex_);
     if (!is_shut_down_ && gate_.num_announced() == num_announced + 1 &&
         gate_.num_unsettled() == 1) {
@@ -181,11 +175,7 @@ void Searcher::RunFinalOptimization() {
           [&submaps](const SubmapId& id) {
             return submaps.Contains(ToHost(id));
           },
-          [&nodes](const NodeId& id) {
-            const auto node = nodes.find(ToHost(id));
-            return node != nodes.end() &&
-                   (*node).data.constant_pose_data.has_value();
-          });
+          nodes);
     }
   }
   const Announcement announcement(this);

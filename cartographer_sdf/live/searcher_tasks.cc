@@ -29,35 +29,6 @@ constexpr char kPlaceFileSuffix[] = ".places";
 // driven since it began.
 constexpr double kQueryBackoff = 0.05;
 
-double SecondsSince(const std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
-      .count();
-}
-
-std::vector<HostConstraint> ConstraintsToHost(
-    const std::vector<Constraint>& constraints,
-    const std::map<NodeId, Eigen::Quaterniond>& gravity_alignments) {
-  std::vector<HostConstraint> result;
-  for (const Constraint& constraint : constraints) {
-    result.push_back(
-        ToHost(constraint, gravity_alignments.at(constraint.node)));
-  }
-  return result;
-}
-
-// By ids as in the map; empty where there are none that fit.
-std::map<SubmapId, Place> ReadPlacesOf(const PlaceFileKey& key,
-                                       const std::string& places_path) {
-  absl::StatusOr<std::map<SubmapId, Place>> places =
-      ReadPlaces(places_path, key);
-  if (places.ok()) return *std::move(places);
-  if (!absl::IsNotFound(places.status())) {
-    LOG(INFO) << places.status().message()
-              << "; its submaps are described anew";
-  }
-  return {};
-}
-
 // What the query says of the trajectory.
 void FillIn(const BackgroundSearch::Query& query,
             const mapping::TrajectoryNode::Data& newest,
@@ -84,67 +55,70 @@ void FillIn(const BackgroundSearch::Query& query,
 
 }  // namespace
 
-std::optional<Place> Searcher::DescribeSubmap(const SubmapId& id) {
+void Searcher::CountPlaces() {
+  TheMetrics().places->Set(static_cast<double>(search_.places().size()));
+  const absl::MutexLock lock(&mutex_);
+  summary_.num_places = static_cast<int>(search_.places().size());
+}
+
+void Searcher::CountQuery(const double seconds, const size_t num_candidates) {
+  TheMetrics().queries->Increment();
+  TheMetrics().candidates->Increment(static_cast<double>(num_candidates));
+  TheMetrics().query_seconds->Observe(seconds);
+  const absl::MutexLock lock(&mutex_);
+  ++summary_.num_queries;
+  summary_.num_candidates += static_cast<int>(num_candidates);
+}
+
+void Searcher::DescribeAndRecognize(const SubmapId& id) {
   HostSubmap submap;
   {
     const absl::MutexLock lock(&mutex_);
     const auto found = submaps_.find(id);
-    if (is_shut_down_ || found == submaps_.end()) return std::nullopt;
-    submap = std::move(found->second.submap);
-    found->second.submap.reset();
+    if (is_shut_down_ || found == submaps_.end()) return;
+    submap = std::exchange(found->second.submap, nullptr);
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const auto describe_begin = std::chrono::steady_clock::now();
   const std::optional<OccupancyGrid> grid = CopyGrid(*submap);
   submap.reset();
   std::optional<Place> place;
   if (grid) place = search_.Describe(id, *grid);
-  CountDescribedSubmap(SecondsSince(begin));
-  if (!place)
-    LOG(INFO) << "submap " << id << " shows no walls, and is left out";
-  const absl::MutexLock lock(&mutex_);
-  ++summary_.num_submaps;
-  return place;
-}
-
-void Searcher::DescribeAndRecognize(const SubmapId& id) {
-  std::optional<Place> place = DescribeSubmap(id);
-  if (!place) return;
-  search_.Remember(*std::move(place));
-  SetNumPlaces(static_cast<double>(search_.places().size()));
+  TheMetrics().submaps->Increment();
+  TheMetrics().describe_seconds->Observe(SecondsSince(describe_begin));
   std::map<SubmapId, OdometryPose> odometry;
   {
     const absl::MutexLock lock(&mutex_);
-    for (const auto& [submap, record] : submaps_) {
-      odometry[submap] = record.odometry;
+    ++summary_.num_submaps;
+    for (const auto& [other, record] : submaps_) {
+      odometry[other] = record.odometry;
     }
   }
+  if (!place) {
+    LOG(INFO) << "submap " << id << " shows no walls, and is left out";
+    return;
+  }
+  search_.Remember(*std::move(place));
+  CountPlaces();
   const auto begin = std::chrono::steady_clock::now();
   const PlaceRecognizer::Recognition recognition =
       search_.Recognize(id, odometry);
-  CountQuery(SecondsSince(begin),
-             static_cast<double>(recognition.num_candidates));
+  CountQuery(SecondsSince(begin), recognition.num_candidates);
   if (AddClosures(id, recognition)) UpdateClosures(id);
 }
 
 bool Searcher::AddClosures(const SubmapId& id,
                            const PlaceRecognizer::Recognition& recognition) {
   const absl::MutexLock lock(&mutex_);
-  ++summary_.num_queries;
-  summary_.num_candidates += static_cast<int>(recognition.num_candidates);
-  summary_.num_places = static_cast<int>(search_.places().size());
   bool has_closures = false;
   for (const Match& match : recognition.matches) {
-    CountMatch(match.verdict);
+    TheMetrics().matches.Increment(match.verdict);
     ++summary_.num_matches[VerdictName(match.verdict)];
     // Forgotten meanwhile, or about to be.
     if (match.verdict != Verdict::kAccepted ||
         submaps_.count(match.pair.reference) == 0 || submaps_.count(id) == 0) {
       continue;
     }
-    LiveClosure closure;
-    closure.closure.match = match;
-    closure.closure.status = ClosureStatus::kUnsupported;
-    closures_.push_back(std::move(closure));
+    closures_.push_back({{match, ClosureStatus::kUnsupported, {}, {}}, 0});
     has_closures = true;
   }
   return has_closures;
@@ -195,12 +169,6 @@ void Searcher::UpdateClosures(const SubmapId& newest) {
 void Searcher::ApplyDecisions(const SubmapId& newest,
                               const ClosureSnapshot& before,
                               const std::vector<Closure>& decided) {
-  std::map<NodeId, Eigen::Quaterniond> gravity_alignments;
-  for (const auto& [submap, nodes] : before.nodes) {
-    for (const SubmapNode& node : nodes) {
-      gravity_alignments[node.id] = node.data->gravity_alignment;
-    }
-  }
   const absl::MutexLock lock(&mutex_);
   for (size_t k = decided.size(); k-- > 0;) {
     LiveClosure& closure = closures_[before.indices[k]];
@@ -211,13 +179,10 @@ void Searcher::ApplyDecisions(const SubmapId& newest,
     if (decided[k].status == ClosureStatus::kInGraph &&
         before.closures[k].status != ClosureStatus::kInGraph) {
       closure.num_constraints = static_cast<int>(decided[k].constraints.size());
+      closure.closure.constraints = decided[k].constraints;
       SetStatus(
           MayInject() ? ClosureStatus::kReady : ClosureStatus::kDetectedOnly,
           &closure);
-      if (MayInject()) {
-        closure.constraints =
-            ConstraintsToHost(decided[k].constraints, gravity_alignments);
-      }
     } else {
       SetStatus(decided[k].status, &closure);
     }
@@ -234,7 +199,14 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
         path, FormatPlaceOptions(options_.place, options_.match));
     if (made.ok()) {
       key = *std::move(made);
-      places = ReadPlacesOf(*key, path + kPlaceFileSuffix);
+      absl::StatusOr<std::map<SubmapId, Place>> read =
+          ReadPlaces(path + kPlaceFileSuffix, *key);
+      if (read.ok()) {
+        places = *std::move(read);
+      } else if (!absl::IsNotFound(read.status())) {
+        LOG(INFO) << read.status().message()
+                  << "; its submaps are described anew";
+      }
     }
   }
   if (!is_frozen) map_moves_ = true;
@@ -257,7 +229,6 @@ std::optional<bool> Searcher::DescribeMissing(
     double distance = 0.;
     std::optional<Eigen::Vector2d> position;
     for (const auto& submap : submaps.trajectory(trajectory_id)) {
-      if (IsStopping()) return std::nullopt;
       if (submap.data.submap == nullptr) continue;
       const SubmapId id = FromHost(submap.id);
       const SubmapId id_of_file{id_in_file, id.index};
@@ -280,6 +251,7 @@ std::optional<bool> Searcher::DescribeMissing(
       position = p_map;
       record.odometry.distance_driven = kDriftOfMaps * distance;
       const absl::MutexLock lock(&mutex_);
+      if (is_shut_down_) return std::nullopt;
       if (gone_.count(id) > 0) continue;
       map_odometry_[id] = record.odometry;
       submaps_[id] = std::move(record);
@@ -305,9 +277,7 @@ void Searcher::RememberLoaded(const std::map<int, int>& trajectory_ids,
     graph.submap_poses[id] = pose.T_local_submap;
   }
   map_layout_ = MakeMapLayout(graph, map_odometry_, search_.places());
-  SetNumPlaces(static_cast<double>(search_.places().size()));
-  const absl::MutexLock lock(&mutex_);
-  summary_.num_places = static_cast<int>(search_.places().size());
+  CountPlaces();
   LOG(INFO) << num_places << " submaps of the loaded map can be recognised";
 }
 
@@ -355,8 +325,8 @@ void Searcher::QueryLocalization(const int trajectory_id) {
     query = search_.Localize(trajectory_id, *map_layout_);
     FillIn(query, *newest, options_.localization.min_num_queries, &result);
   }
-  CountQuery(SecondsSince(begin), static_cast<double>(query.num_candidates));
-  CountLocalization(result.verdict);
+  CountQuery(SecondsSince(begin), query.num_candidates);
+  TheMetrics().localizations.Increment(result.verdict);
   if (!RecordQuery(query, ThreadCpuSeconds() - cpu_begin, &result)) return;
   search_.StopLocalizing(trajectory_id);
   LOG(INFO) << "trajectory " << trajectory_id << " is localised in the map at "
@@ -371,8 +341,6 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
                            const double cpu_seconds,
                            LocalizationResult* const result) {
   const absl::MutexLock lock(&mutex_);
-  ++summary_.num_queries;
-  summary_.num_candidates += static_cast<int>(query.num_candidates);
   Trajectory& trajectory = trajectories_.at(result->trajectory_id);
   // Ended, or asked anew meanwhile.
   if (!trajectory.is_searched || trajectory.is_restarted) return false;
@@ -390,14 +358,10 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
   const bool may_inject = MayInject() && !trajectory.was_localized;
   for (const Closure& found : query.closures) {
     LiveClosure closure;
-    closure.closure.match = found.match;
+    closure.closure = found;
     closure.num_constraints = static_cast<int>(found.constraints.size());
     SetStatus(may_inject ? ClosureStatus::kReady : ClosureStatus::kDetectedOnly,
               &closure);
-    if (may_inject) {
-      closure.constraints =
-          ConstraintsToHost(found.constraints, query.gravity_alignments);
-    }
     LogClosure(closure);
     closures_.push_back(std::move(closure));
   }

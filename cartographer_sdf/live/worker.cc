@@ -25,10 +25,6 @@ double ThreadCpuSeconds() {
          1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-Worker::Worker() : thread_([this] { Run(); }) {}
-
-Worker::~Worker() { Stop(); }
-
 void Worker::Schedule(std::function<void()> task) {
   const absl::MutexLock lock(&mutex_);
   if (!is_stopping_) tasks_.push_back(std::move(task));

@@ -6,6 +6,7 @@
 #ifndef CARTOGRAPHER_SDF_LIVE_WORKER_H_
 #define CARTOGRAPHER_SDF_LIVE_WORKER_H_
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <thread>
@@ -18,10 +19,16 @@ namespace cartographer_sdf {
 // Of the calling thread [s].
 [[nodiscard]] double ThreadCpuSeconds();
 
+[[nodiscard]] inline double SecondsSince(
+    const std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin)
+      .count();
+}
+
 class Worker {
  public:
-  Worker();
-  ~Worker();
+  Worker() : thread_([this] { Run(); }) {}
+  ~Worker() { Stop(); }
 
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;

@@ -4,7 +4,6 @@
 #include "cartographer_sdf/localization/confirmation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -21,14 +20,6 @@ constexpr double kMinOverlap = 0.4;
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
 
-// Of the translation after a way through a map [m], as closing/consistency has
-// it.
-double DriftSigma(const ConsistencyOptions& options, const double way) {
-  const double swing = options.rotation_sigma_per_sqrt_meter * std::sqrt(way) *
-                       way / std::sqrt(3.);
-  return std::hypot(swing, options.translation_sigma_per_meter * way);
-}
-
 // A pair of places that the placement lays over each other.
 struct PairToCheck {
   const Place* reference;
@@ -41,19 +32,11 @@ struct PairToCheck {
 
 class Confirmer {
  public:
-  Confirmer(const PlacementOptions& options,
-            const ConsistencyOptions& consistency,
-            const MatchOptions& match_options, const PlacedMap& map,
-            const PlacedMap& query, std::vector<PairPose> votes)
-      : options_(options),
-        consistency_(consistency),
-        match_options_(match_options),
-        map_(map),
-        query_(query),
-        maps_{map.layout, query.layout},
-        votes_(std::move(votes)) {
-    for (const PairPose& vote : votes_)
+  Confirmer(const LocalizationTask& task, std::vector<PairPose> votes)
+      : task_(task), votes_(std::move(votes)) {
+    for (const PairPose& vote : votes_) {
       done_.insert({vote.reference, vote.query});
+    }
   }
 
   // Verifies the pairs that follow from the votes so far, nearest first; false
@@ -85,12 +68,12 @@ class Confirmer {
  private:
   [[nodiscard]] std::vector<PairToCheck> PairsToCheck() const {
     std::vector<PairToCheck> pairs;
-    for (const auto& [reference_id, reference] : *map_.places) {
-      if (map_.layout->T_map_submap.count(reference_id) == 0) continue;
-      for (const auto& [query_id, query] : *query_.places) {
+    for (const auto& [reference_id, reference] : *task_.map.places) {
+      if (task_.map.layout->T_map_submap.count(reference_id) == 0) continue;
+      for (const auto& [query_id, query] : *task_.query.places) {
         if (done_.count({reference_id, query_id}) > 0) continue;
         std::optional<PairToCheck> pair = Predict(reference, query);
-        if (pair && DriftSigma(consistency_, pair->way) <= kMaxSigma &&
+        if (pair && DriftSigma(task_.consistency, pair->way) <= kMaxSigma &&
             OverlapsEnough(reference.surface, query.surface,
                            pair->T_reference_query)) {
           pairs.push_back(*std::move(pair));
@@ -111,33 +94,34 @@ class Confirmer {
     double shortest = std::numeric_limits<double>::infinity();
     for (const PairPose& vote : votes_) {
       const std::optional<double> in_map =
-          map_.layout->distances.Between(vote.reference, reference.id);
+          task_.map.layout->distances.Between(vote.reference, reference.id);
       const std::optional<double> in_query =
-          query_.layout->distances.Between(vote.query, query.id);
+          task_.query.layout->distances.Between(vote.query, query.id);
       if (!in_map || !in_query || *in_map + *in_query >= shortest) continue;
       shortest = *in_map + *in_query;
       nearest = &vote;
     }
     if (nearest == nullptr) return std::nullopt;
-    return PairToCheck{&reference,
-                       &query,
-                       map_.layout->T_map_submap.at(reference.id).Inverse() *
-                           PlaceByVote(maps_, *nearest, query.id),
-                       shortest,
-                       {},
-                       {}};
+    return PairToCheck{
+        &reference,
+        &query,
+        task_.map.layout->T_map_submap.at(reference.id).Inverse() *
+            PlaceByVote(task_.layouts(), *nearest, query.id),
+        shortest,
+        {},
+        {}};
   }
 
   void Check(PairToCheck* const pair) const {
     pair->agreeing = VerifyPrediction(*pair);
     if (pair->agreeing ||
-        DriftSigma(consistency_, pair->way) > kMaxContradictionSigma) {
+        DriftSigma(task_.consistency, pair->way) > kMaxContradictionSigma) {
       return;
     }
     // Twice what a single match may have: furniture moves, people walk.
     pair->contradicting = FindContradiction(
-        match_options_.verification,
-        2. * match_options_.verification.judgement.max_contradiction_ratio,
+        task_.match.verification,
+        2. * task_.match.verification.judgement.max_contradiction_ratio,
         *pair->reference, *pair->query, pair->T_reference_query);
   }
 
@@ -145,24 +129,20 @@ class Confirmer {
   [[nodiscard]] std::optional<Match> VerifyPrediction(
       const PairToCheck& pair) const {
     std::optional<VerifiedPose> verified =
-        VerifyHypotheses(match_options_.verification, pair.reference->surface,
+        VerifyHypotheses(task_.match.verification, pair.reference->surface,
                          pair.query->surface, {pair.T_reference_query});
     if (!verified || verified->verdict != Verdict::kAccepted ||
         !AreNear(verified->T_reference_query, pair.T_reference_query,
-                 query_.layout->centroids.at(pair.query->id),
-                 {options_.same_distance_meters, options_.same_rotation})) {
+                 task_.query.layout->centroids.at(pair.query->id),
+                 {task_.placement.same_distance_meters,
+                  task_.placement.same_rotation})) {
       return std::nullopt;
     }
-    return MakeMatch(match_options_, *pair.reference, *pair.query,
+    return MakeMatch(task_.match, *pair.reference, *pair.query,
                      *std::move(verified));
   }
 
-  const PlacementOptions& options_;
-  const ConsistencyOptions& consistency_;
-  const MatchOptions& match_options_;
-  const PlacedMap& map_;
-  const PlacedMap& query_;
-  const MapPair maps_;
+  const LocalizationTask& task_;
   std::vector<PairPose> votes_;
   std::set<std::pair<SubmapId, SubmapId>> done_;
   size_t num_checked_ = 0;
@@ -201,15 +181,11 @@ std::optional<Match> FindContradiction(const VerificationOptions& options,
   return match;
 }
 
-Confirmation ConfirmPlacement(const PlacementOptions& options,
-                              const ConsistencyOptions& consistency,
-                              const MatchOptions& match_options,
-                              const PlacedMap& map, const PlacedMap& query,
+Confirmation ConfirmPlacement(const LocalizationTask& task,
                               std::vector<PairPose> votes,
                               const size_t max_num_pairs,
                               const Executor& executor) {
-  Confirmer confirmer(options, consistency, match_options, map, query,
-                      std::move(votes));
+  Confirmer confirmer(task, std::move(votes));
   Confirmation confirmation;
   while (confirmer.num_checked() < max_num_pairs &&
          confirmer.Spread(max_num_pairs - confirmer.num_checked(), executor,

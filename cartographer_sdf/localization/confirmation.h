@@ -50,13 +50,23 @@ struct Confirmation {
   std::vector<Match> contradicting;
 };
 
+// What is to be localized in what, and how. Nothing is owned.
+struct LocalizationTask {
+  const PlacementOptions& placement;
+  const ConsistencyOptions& consistency;
+  const MatchOptions& match;
+  PlacedMap map;
+  PlacedMap query;
+
+  [[nodiscard]] MapPair layouts() const { return {map.layout, query.layout}; }
+};
+
 // `votes` are those of the placement. Pairs near votes come first; at most
 // `max_num_pairs` are verified.
-[[nodiscard]] Confirmation ConfirmPlacement(
-    const PlacementOptions& options, const ConsistencyOptions& consistency,
-    const MatchOptions& match_options, const PlacedMap& map,
-    const PlacedMap& query, std::vector<PairPose> votes, size_t max_num_pairs,
-    const Executor& executor);
+[[nodiscard]] Confirmation ConfirmPlacement(const LocalizationTask& task,
+                                            std::vector<PairPose> votes,
+                                            size_t max_num_pairs,
+                                            const Executor& executor);
 
 }  // namespace cartographer_sdf
 

@@ -8,10 +8,7 @@
 #include <functional>
 #include <limits>
 #include <queue>
-#include <set>
 #include <utility>
-
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {

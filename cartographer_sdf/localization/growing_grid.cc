@@ -16,14 +16,16 @@ void GrowingGrid::Insert(DrivenScan scan) {
   scans_.push_back(std::move(scan));
   const double newest = scans_.back().distance_driven;
   if (newest - scans_.front().distance_driven <= window_) {
-    Draw(scans_.back());
+    grid_.Insert(scans_.back().T_local_sensor, scans_.back().scan);
     return;
   }
   while (newest - scans_.front().distance_driven > window_ / 2.) {
     scans_.pop_front();
   }
   grid_ = ScanGrid(options_);
-  for (const DrivenScan& kept : scans_) Draw(kept);
+  for (const DrivenScan& kept : scans_) {
+    grid_.Insert(kept.T_local_sensor, kept.scan);
+  }
 }
 
 const Rigid2& GrowingGrid::T_local_submap() const {
@@ -38,10 +40,6 @@ std::optional<OccupancyGrid> GrowingGrid::Copy() const {
   Rigid2& T_submap_grid = grid.geometry.T_submap_grid;
   T_submap_grid = T_local_submap().Inverse() * T_submap_grid;
   return grid;
-}
-
-void GrowingGrid::Draw(const DrivenScan& scan) {
-  grid_.Insert(scan.T_local_sensor, scan.scan);
 }
 
 }  // namespace cartographer_sdf

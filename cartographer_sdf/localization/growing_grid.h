@@ -44,8 +44,6 @@ class GrowingGrid {
   [[nodiscard]] std::optional<OccupancyGrid> Copy() const;
 
  private:
-  void Draw(const DrivenScan& scan);
-
   const ScanGridOptions options_;
   const double window_;
   std::deque<DrivenScan> scans_;

@@ -4,7 +4,7 @@
 #include "cartographer_sdf/localization/localizer.h"
 
 #include <algorithm>
-#include <limits>
+#include <iterator>
 #include <set>
 
 #include "absl/strings/str_format.h"
@@ -16,12 +16,6 @@ namespace {
 
 bool ByIds(const Match& a, const Match& b) {
   return IsBeforeByIds(a.pair, b.pair);
-}
-
-std::vector<PairPose> PairsOf(const std::vector<Match>& matches) {
-  std::vector<PairPose> pairs;
-  for (const Match& match : matches) pairs.push_back(match.pair);
-  return pairs;
 }
 
 // Where in the map a placement's strongest vote puts its place.
@@ -44,29 +38,25 @@ std::string DescribeWhere(const MapLayout& map,
 
 class Localizer {
  public:
-  Localizer(const LocalizationOptions& options,
-            const ConsistencyOptions& consistency,
-            const MatchOptions& match_options, const PlacedMap& map,
-            const PlacedMap& query, const PlaceMatcher& match_places,
-            const Executor& executor, const StageCallback& on_stage)
+  Localizer(const LocalizationOptions& options, const LocalizationTask& task,
+            const PlaceMatcher& match_places, const Executor& executor,
+            const StageCallback& on_stage)
       : options_(options),
-        consistency_(consistency),
-        match_options_(match_options),
-        map_(map),
-        query_(query),
+        task_(task),
         match_places_(match_places),
         executor_(executor),
         clock_(on_stage, &result_.stage_seconds) {}
 
   Localization Run() {
     double area = 0.;
-    for (const auto& [id, place] : *query_.places) {
+    for (const auto& [id, place] : *task_.query.places) {
       area += ObservedArea(place.surface);
     }
-    if (query_.places->empty() || area < options_.placement.min_observed_area) {
+    if (task_.query.places->empty() ||
+        area < task_.placement.min_observed_area) {
       Refuse(LocalizationVerdict::kTooLittleSeen,
              absl::StrFormat("too little was seen: %.0f m2, %.0f are needed",
-                             area, options_.placement.min_observed_area));
+                             area, task_.placement.min_observed_area));
     } else {
       Search();
     }
@@ -78,7 +68,8 @@ class Localizer {
   // All places of the query: evenly spaced ones first, then those between.
   [[nodiscard]] std::vector<std::map<SubmapId, Place>> Rounds() const {
     std::vector<const Place*> places;
-    for (const auto& [id, place] : *query_.places) places.push_back(&place);
+    for (const auto& [id, place] : *task_.query.places)
+      places.push_back(&place);
     std::vector<std::map<SubmapId, Place>> rounds;
     std::set<size_t> done;
     for (size_t count = static_cast<size_t>(options_.num_first_places);
@@ -102,7 +93,7 @@ class Localizer {
         // Likely, but for the rival.
         num_ambiguous_ +=
             match.verdict == Verdict::kAmbiguous &&
-            match.pair.score >= match_options_.verification.judgement.min_score;
+            match.pair.score >= task_.match.verification.judgement.min_score;
         if (match.verdict == Verdict::kAccepted) {
           accepted.push_back(std::move(match));
         }
@@ -122,9 +113,10 @@ class Localizer {
   }
 
   void Vote() {
-    result_.placements =
-        FindPlacements(options_.placement, consistency_,
-                       {map_.layout, query_.layout}, PairsOf(result_.matches));
+    std::vector<PairPose> pairs;
+    for (const Match& match : result_.matches) pairs.push_back(match.pair);
+    result_.placements = FindPlacements(task_.placement, task_.consistency,
+                                        task_.layouts(), pairs);
   }
 
   void Confirm() {
@@ -133,9 +125,8 @@ class Localizer {
       votes.push_back(result_.matches[vote].pair);
     }
     Confirmation confirmation = ConfirmPlacement(
-        options_.placement, consistency_, match_options_, map_, query_,
-        std::move(votes), static_cast<size_t>(options_.max_num_confirmed_pairs),
-        executor_);
+        task_, std::move(votes),
+        static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
     result_.contradictions = std::move(confirmation.contradicting);
     if (confirmation.agreeing.empty()) return;
     // What was matched elsewhere and is confirmed here has two matches.
@@ -197,14 +188,14 @@ class Localizer {
   }
 
   void Decide() {
-    const PlacementOptions& options = options_.placement;
+    const PlacementOptions& options = task_.placement;
     result_.T_map_query.reset();
     result_.runner_up_score.reset();
     if (result_.placements.empty()) return RefuseWithoutPlacement();
     const Placement& best = result_.placements.front();
     const Placement* const rival = CountVotes();
     const std::string where =
-        DescribeWhere(*map_.layout, result_.matches, best);
+        DescribeWhere(*task_.map.layout, result_.matches, best);
     const double fraction = ContradictingFraction();
     if (best.score < options.min_score) {
       Refuse(LocalizationVerdict::kUncertain,
@@ -219,12 +210,12 @@ class Localizer {
                              where, 100. * fraction));
     } else if (rival != nullptr &&
                best.score - rival->score < options.min_lead) {
-      Refuse(
-          LocalizationVerdict::kAmbiguous,
-          absl::StrFormat("ambiguous between %s (score %.1f) and %s (%.1f)",
-                          where, best.score,
-                          DescribeWhere(*map_.layout, result_.matches, *rival),
-                          rival->score));
+      Refuse(LocalizationVerdict::kAmbiguous,
+             absl::StrFormat(
+                 "ambiguous between %s (score %.1f) and %s (%.1f)", where,
+                 best.score,
+                 DescribeWhere(*task_.map.layout, result_.matches, *rival),
+                 rival->score));
     } else {
       result_.verdict = LocalizationVerdict::kLocalized;
       result_.reason =
@@ -234,10 +225,7 @@ class Localizer {
   }
 
   const LocalizationOptions& options_;
-  const ConsistencyOptions& consistency_;
-  const MatchOptions& match_options_;
-  const PlacedMap& map_;
-  const PlacedMap& query_;
+  const LocalizationTask& task_;
   const PlaceMatcher& match_places_;
   const Executor& executor_;
   int num_ambiguous_ = 0;
@@ -261,25 +249,13 @@ std::string Validate(const LocalizationOptions& options) {
 }
 
 const char* LocalizationVerdictName(const LocalizationVerdict verdict) {
-  switch (verdict) {
-    case LocalizationVerdict::kLocalized:
-      return "localized";
-    case LocalizationVerdict::kTooLittleSeen:
-      return "too_little_seen";
-    case LocalizationVerdict::kNothingAlike:
-      return "nothing_alike";
-    case LocalizationVerdict::kUncertain:
-      return "uncertain";
-    case LocalizationVerdict::kAmbiguous:
-      return "ambiguous";
-    case LocalizationVerdict::kContradicted:
-      return "contradicted";
-    case LocalizationVerdict::kNoMap:
-      return "no_map";
-    case LocalizationVerdict::kFinished:
-      return "finished";
-  }
-  LOG(FATAL) << "not a verdict: " << static_cast<int>(verdict);
+  // In the order of the enumerators.
+  constexpr const char* kNames[] = {
+      "localized", "too_little_seen", "nothing_alike", "uncertain",
+      "ambiguous", "contradicted",    "no_map",        "finished"};
+  static_assert(std::size(kNames) ==
+                static_cast<size_t>(LocalizationVerdict::kFinished) + 1);
+  return kNames[static_cast<size_t>(verdict)];
 }
 
 Localization Localize(const LocalizationOptions& options,
@@ -290,9 +266,9 @@ Localization Localize(const LocalizationOptions& options,
   CHECK_EQ(Validate(options), "");
   CHECK(match_options.method == Method::kSdf)
       << "the paper's method verifies nothing";
-  return Localizer(options, consistency, match_options, map, query,
-                   match_places, executor, on_stage)
-      .Run();
+  const LocalizationTask task{options.placement, consistency, match_options,
+                              map, query};
+  return Localizer(options, task, match_places, executor, on_stage).Run();
 }
 
 }  // namespace cartographer_sdf

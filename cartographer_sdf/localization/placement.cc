@@ -4,134 +4,68 @@
 #include "cartographer_sdf/localization/placement.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <set>
 #include <tuple>
 #include <utility>
 
 #include "cartographer_sdf/geometry/alignment.h"
+#include "cartographer_sdf/geometry/distinct_poses.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// What two votes say of each other.
-enum class Relation { kAgree, kSilent, kExclude };
+// Of the cycle through both maps.
+CycleVerdict CheckWay(const ConsistencyOptions& consistency,
+                      const MapPair& maps, const PairPose& a, const PairPose& b,
+                      const double way_in_query) {
+  const std::optional<double> way_in_map =
+      maps.map->distances.Between(a.reference, b.reference);
+  if (!way_in_map) return CycleVerdict::kUninformative;
+  PairPose renamed_a = a, renamed_b = b;
+  renamed_a.reference = {0, 0};
+  renamed_b.reference = {0, 1};
+  renamed_a.query = {1, 0};
+  renamed_b.query = {1, 1};
+  const auto& map_poses = maps.map->T_map_submap;
+  const auto& query_poses = maps.query->T_map_submap;
+  return CheckCycle(
+      consistency,
+      {{renamed_a.reference, {map_poses.at(a.reference), 0.}},
+       {renamed_b.reference, {map_poses.at(b.reference), *way_in_map}},
+       {renamed_a.query, {query_poses.at(a.query), 0.}},
+       {renamed_b.query, {query_poses.at(b.query), way_in_query}}},
+      renamed_a, renamed_b);
+}
 
-class Votes {
- public:
-  Votes(const PlacementOptions& options, const ConsistencyOptions& consistency,
-        const MapPair& maps, const std::vector<PairPose>& closures)
-      : options_(options),
-        consistency_(consistency),
-        maps_(maps),
-        closures_(closures),
-        relations_(closures.size() * closures.size(), Relation::kAgree) {
-    for (size_t a = 0; a < closures.size(); ++a) {
-      for (size_t b = a + 1; b < closures.size(); ++b) {
-        relations_[a * closures.size() + b] =
-            relations_[b * closures.size() + a] =
-                Relate(closures[a], closures[b]);
-      }
-    }
+// What two votes say of each other: consistent ones agree, inconsistent ones
+// exclude each other.
+CycleVerdict Relate(const PlacementOptions& options,
+                    const ConsistencyOptions& consistency, const MapPair& maps,
+                    const PairPose& a, const PairPose& b) {
+  const std::optional<double> way_in_query =
+      maps.query->distances.Between(a.query, b.query);
+  if (!way_in_query) return CycleVerdict::kUninformative;
+  const bool is_same =
+      AreNear(PlaceByVote(maps, a, b.query), PlaceByVote(maps, b, b.query),
+              maps.query->centroids.at(b.query),
+              {options.same_distance_meters, options.same_rotation});
+  const CycleVerdict verdict = CheckWay(consistency, maps, a, b, *way_in_query);
+  // Nearly the same place is no other one; one of the two is imprecise.
+  if (verdict == CycleVerdict::kInconsistent && is_same) {
+    return CycleVerdict::kUninformative;
   }
-
-  [[nodiscard]] Relation Between(const size_t a, const size_t b) const {
-    return relations_[a * closures_.size() + b];
+  // Else the map may have drifted between the two, but not the query: either
+  // the map shows one place twice, or two places are alike. Nobody can tell,
+  // except of what is one place of the query.
+  if (verdict != CycleVerdict::kUninformative ||
+      *way_in_query > options.independent_distance_meters) {
+    return verdict;
   }
-
-  // Scores that agree less those that exclude, over the votes of a placement.
-  [[nodiscard]] double Support(const size_t vote,
-                               const std::vector<size_t>& others) const {
-    double support = 0.;
-    for (const size_t other : others) {
-      if (other == vote) continue;
-      const double score = std::max(closures_[other].score, 0.);
-      const Relation relation = Between(vote, other);
-      if (relation == Relation::kAgree) support += score;
-      if (relation == Relation::kExclude) support -= score;
-    }
-    return support;
-  }
-
- private:
-  [[nodiscard]] Relation Relate(const PairPose& a, const PairPose& b) const {
-    const std::optional<double> way_in_query =
-        maps_.query->distances.Between(a.query, b.query);
-    if (!way_in_query) return Relation::kSilent;
-    const bool is_same =
-        AreNear(PlaceByVote(maps_, a, b.query), PlaceByVote(maps_, b, b.query),
-                maps_.query->centroids.at(b.query),
-                {options_.same_distance_meters, options_.same_rotation});
-    switch (CheckWay(a, b, *way_in_query)) {
-      case CycleVerdict::kConsistent:
-        return Relation::kAgree;
-      case CycleVerdict::kInconsistent:
-        // Nearly the same place is no other one; one of the two is imprecise.
-        return is_same ? Relation::kSilent : Relation::kExclude;
-      case CycleVerdict::kUninformative:
-        break;
-    }
-    // The map may have drifted between the two, but not the query: either the
-    // map shows one place twice, or two places are alike. Nobody can tell.
-    if (*way_in_query > options_.independent_distance_meters) {
-      return Relation::kSilent;
-    }
-    return is_same ? Relation::kAgree : Relation::kExclude;
-  }
-
-  // Of the cycle through both maps.
-  [[nodiscard]] CycleVerdict CheckWay(const PairPose& a, const PairPose& b,
-                                      const double way_in_query) const {
-    const std::optional<double> way_in_map =
-        maps_.map->distances.Between(a.reference, b.reference);
-    if (!way_in_map) return CycleVerdict::kUninformative;
-    const SubmapId reference_a{0, 0}, reference_b{0, 1};
-    const SubmapId query_a{1, 0}, query_b{1, 1};
-    const auto& map_poses = maps_.map->T_map_submap;
-    const auto& query_poses = maps_.query->T_map_submap;
-    const std::map<SubmapId, OdometryPose> ways = {
-        {reference_a, {map_poses.at(a.reference), 0.}},
-        {reference_b, {map_poses.at(b.reference), *way_in_map}},
-        {query_a, {query_poses.at(a.query), 0.}},
-        {query_b, {query_poses.at(b.query), way_in_query}}};
-    PairPose renamed_a = a, renamed_b = b;
-    renamed_a.reference = reference_a;
-    renamed_a.query = query_a;
-    renamed_b.reference = reference_b;
-    renamed_b.query = query_b;
-    return CheckCycle(consistency_, ways, renamed_a, renamed_b);
-  }
-
-  const PlacementOptions& options_;
-  const ConsistencyOptions& consistency_;
-  const MapPair& maps_;
-  const std::vector<PairPose>& closures_;
-  std::vector<Relation> relations_;
-};
-
-// Votes in an order that does not depend on theirs: weightiest first.
-std::vector<size_t> InOrderOfWeight(const Votes& votes,
-                                    const std::vector<PairPose>& closures) {
-  std::vector<size_t> order(closures.size());
-  for (size_t k = 0; k < order.size(); ++k) order[k] = k;
-  // Sums in the order of ids, so that they round the same.
-  std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
-    return IsBeforeByIds(closures[a], closures[b]);
-  });
-  std::vector<double> weights(closures.size());
-  for (size_t k = 0; k < closures.size(); ++k) {
-    weights[k] = closures[k].score + votes.Support(k, order);
-  }
-  std::stable_sort(
-      order.begin(), order.end(),
-      [&](const size_t a, const size_t b) { return weights[a] > weights[b]; });
-  return order;
+  return is_same ? CycleVerdict::kConsistent : CycleVerdict::kInconsistent;
 }
 
 // What two groups of votes say of each other.
-double SupportBetween(const Votes& votes, const std::vector<size_t>& a,
+double SupportBetween(const VerdictTable& votes, const std::vector<size_t>& a,
                       const std::vector<size_t>& b) {
   double support = 0.;
   for (const size_t vote : a) support += votes.Support(vote, b);
@@ -139,7 +73,7 @@ double SupportBetween(const Votes& votes, const std::vector<size_t>& a,
 }
 
 // Groups that began far apart may have met.
-void MergeGroups(const Votes& votes,
+void MergeGroups(const VerdictTable& votes,
                  std::vector<std::vector<size_t>>* const all_groups) {
   std::vector<std::vector<size_t>>& groups = *all_groups;
   while (true) {
@@ -161,10 +95,9 @@ void MergeGroups(const Votes& votes,
   }
 }
 
-std::vector<std::vector<size_t>> GroupVotes(
-    const Votes& votes, const std::vector<PairPose>& closures) {
+std::vector<std::vector<size_t>> GroupVotes(const VerdictTable& votes) {
   std::vector<std::vector<size_t>> groups;
-  for (const size_t vote : InOrderOfWeight(votes, closures)) {
+  for (const size_t vote : votes.InOrderOfWeight()) {
     std::vector<size_t>* best = nullptr;
     double best_support = 0.;
     for (std::vector<size_t>& group : groups) {
@@ -269,9 +202,11 @@ std::vector<Placement> FindPlacements(const PlacementOptions& options,
                                       const MapPair& maps,
                                       const std::vector<PairPose>& closures) {
   CHECK_EQ(Validate(options), "");
-  const Votes votes(options, consistency, maps, closures);
+  const VerdictTable votes(closures, [&](const PairPose& a, const PairPose& b) {
+    return Relate(options, consistency, maps, a, b);
+  });
   std::vector<Placement> placements;
-  for (std::vector<size_t>& group : GroupVotes(votes, closures)) {
+  for (std::vector<size_t>& group : GroupVotes(votes)) {
     // In the order of ids: sums round the same whatever the order was.
     std::sort(group.begin(), group.end(), [&](const size_t a, const size_t b) {
       return IsBeforeByIds(closures[a], closures[b]);

@@ -13,12 +13,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "cartographer_sdf/closing/consistency.h"
-#include "cartographer_sdf/geometry/distinct_poses.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/pair_pose.h"
 #include "cartographer_sdf/localization/driven_distances.h"

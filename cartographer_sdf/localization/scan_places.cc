@@ -4,9 +4,6 @@
 #include "cartographer_sdf/localization/scan_places.h"
 
 #include <algorithm>
-#include <map>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "cartographer_sdf/grid/scan_grid.h"
@@ -144,26 +141,6 @@ std::map<int, std::vector<NodeId>> NodesWithScans(
   return result;
 }
 
-std::map<SubmapId, Place> DescribeGrids(
-    const PlaceOptions& place_options, const MatchOptions& match_options,
-    const std::map<SubmapId, OccupancyGrid>& grids, const Executor& executor) {
-  std::vector<const std::pair<const SubmapId, OccupancyGrid>*> entries;
-  for (const auto& entry : grids) entries.push_back(&entry);
-  std::vector<std::optional<Place>> described(entries.size());
-  executor(entries.size(), [&](const size_t k) {
-    described[k] =
-        DescribePlace(place_options, entries[k]->first, entries[k]->second);
-    if (described[k]) FindSelfSimilarities(match_options, &*described[k]);
-  });
-  std::map<SubmapId, Place> places;
-  for (std::optional<Place>& place : described) {
-    if (!place) continue;
-    const SubmapId id = place->id;
-    places.emplace(id, *std::move(place));
-  }
-  return places;
-}
-
 }  // namespace
 
 std::string Validate(const ScanPlaceOptions& options) {
@@ -175,30 +152,30 @@ std::string Validate(const ScanPlaceOptions& options) {
 
 ScanMap DescribeScans(const ScanPlaceOptions& options,
                       const PlaceOptions& place_options,
-                      const MatchOptions& match_options, const MapState& map,
-                      const std::map<NodeId, PointCloud2>& point_clouds,
-                      const TimeWindow& window, const Executor& executor,
+                      const MatchOptions& match_options,
+                      const DescribedMap& map, const TimeWindow& window,
+                      const Executor& executor,
                       const std::optional<std::set<int>>& trajectories) {
   CHECK_EQ(Validate(options), "");
   ScanMap scan_map;
   MapState& state = scan_map.map.state;
-  state.format_version = map.format_version;
-  state.trajectories = map.trajectories;
-  state.pose_graph.nodes = NodesIn(window, map.pose_graph.nodes);
+  state.format_version = map.state.format_version;
+  state.trajectories = map.state.trajectories;
+  state.pose_graph.nodes = NodesIn(window, map.state.pose_graph.nodes);
   for (const auto& [trajectory, nodes] :
-       NodesWithScans(state.pose_graph.nodes, point_clouds)) {
+       NodesWithScans(state.pose_graph.nodes, map.point_clouds)) {
     if (trajectories && trajectories->count(trajectory) == 0) continue;
     for (const std::vector<NodeId>& group :
          GroupNodes(nodes, static_cast<size_t>(options.num_scans),
                     state.pose_graph.nodes)) {
       const SubmapId id{trajectory, group.front().index};
       scan_map.grids.emplace(
-          id, AddSubmap(options, id, group, point_clouds, &state));
+          id, AddSubmap(options, id, group, map.point_clouds, &state));
     }
   }
   scan_map.map.odometry = OdometryPoses(state);
   scan_map.map.places =
-      DescribeGrids(place_options, match_options, scan_map.grids, executor);
+      DescribePlaces(place_options, match_options, scan_map.grids, executor);
   return scan_map;
 }
 

@@ -44,13 +44,12 @@ struct ScanMap {
   std::map<SubmapId, OccupancyGrid> grids;
 };
 
-// `point_clouds` are those of the nodes of `map`, in the frames of their nodes.
-// Trajectories other than the given ones, if any are given, are left out.
+// Of a map with its point clouds. Trajectories other than the given ones, if
+// any are given, are left out.
 [[nodiscard]] ScanMap DescribeScans(
     const ScanPlaceOptions& options, const PlaceOptions& place_options,
-    const MatchOptions& match_options, const MapState& map,
-    const std::map<NodeId, PointCloud2>& point_clouds, const TimeWindow& window,
-    const Executor& executor,
+    const MatchOptions& match_options, const DescribedMap& map,
+    const TimeWindow& window, const Executor& executor,
     const std::optional<std::set<int>>& trajectories = {});
 
 }  // namespace cartographer_sdf

@@ -137,10 +137,8 @@ absl::Status CheckTsdf(const proto::Tsdf2D& tsdf, const int num_values) {
 absl::Status FillImpliedProbabilities(const proto::Grid2D& stored,
                                       OccupancyGrid* const grid) {
   const proto::Tsdf2D& tsdf = stored.tsdf_2d();
-  if (absl::Status status = CheckTsdf(tsdf, stored.cells_size());
-      !status.ok()) {
-    return status;
-  }
+  const absl::Status status = CheckTsdf(tsdf, stored.cells_size());
+  if (!status.ok()) return status;
   const float truncation = tsdf.truncation_distance();
   const float resolution = static_cast<float>(grid->geometry.resolution);
   const float free_distance =
@@ -183,17 +181,6 @@ proto::MapLimits MakeLimits(const CellGeometry& geometry,
   limits.mutable_cell_limits()->set_num_x_cells(geometry.size.y());
   limits.mutable_cell_limits()->set_num_y_cells(geometry.size.x());
   return limits;
-}
-
-// The host's box of the cells from `min` to `max`.
-proto::CellBox MakeBox(const Eigen::Array2i& size, const Eigen::Array2i& min,
-                       const Eigen::Array2i& max) {
-  proto::CellBox box;
-  box.set_min_x(size.y() - 1 - max.y());
-  box.set_min_y(size.x() - 1 - max.x());
-  box.set_max_x(size.y() - 1 - min.y());
-  box.set_max_y(size.x() - 1 - min.x());
-  return box;
 }
 
 }  // namespace
@@ -246,7 +233,11 @@ proto::Grid2D MakeGrid2D(const OccupancyGrid& grid,
     }
   }
   if ((max_known >= 0).all()) {
-    *result.mutable_known_cells_box() = MakeBox(size, min_known, max_known);
+    proto::CellBox& box = *result.mutable_known_cells_box();
+    box.set_min_x(size.y() - 1 - max_known.y());
+    box.set_min_y(size.x() - 1 - max_known.x());
+    box.set_max_x(size.y() - 1 - min_known.y());
+    box.set_max_y(size.x() - 1 - min_known.x());
   }
   return result;
 }

@@ -12,13 +12,10 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_sdf/pbstream/assumed_attitudes.h"
 #include "cartographer_sdf/pbstream/map_reader.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
 #include "cartographer_sdf/pbstream/pose_graph_codec.h"
-#include "cartographer_sdf/pbstream/pose_graph_update.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
-#include "cartographer_sdf/pbstream/state_reader.h"
 #include "cartographer_sdf/pbstream/trajectory_record.h"
 #include "glog/logging.h"
 
@@ -37,37 +34,32 @@ void Renumber(const MapPart& part, proto::Id* const id) {
   id->set_trajectory_id(part.trajectories.at(id->trajectory_id()));
 }
 
-void AppendPoseGraph(const MapPart& part, const PoseGraph& pose_graph,
-                     PoseGraph* const joined) {
-  for (const auto& [id, pose] : pose_graph.submap_poses) {
-    CHECK(joined->submap_poses.emplace(Renumbered(part, id), pose).second);
-  }
-  for (const auto& [id, node] : pose_graph.nodes) {
-    CHECK(joined->nodes.emplace(Renumbered(part, id), node).second);
-  }
-  for (Constraint constraint : pose_graph.constraints) {
-    constraint.submap = Renumbered(part, constraint.submap);
-    constraint.node = Renumbered(part, constraint.node);
-    joined->constraints.push_back(constraint);
-  }
-  joined->landmark_poses.insert(pose_graph.landmark_poses.begin(),
-                                pose_graph.landmark_poses.end());
-}
+// The records that come first, of all parts under their new numbers.
+struct Beginning {
+  proto::SerializationHeader header;
+  proto::SerializedData pose_graph;
+  proto::SerializedData options;
+};
 
-// The same as AppendPoseGraph, of the stored graph.
-void AppendStored(const MapPart& part, proto::PoseGraph stored,
-                  proto::PoseGraph* const joined) {
-  std::set<std::string> known_landmarks;
-  for (const proto::LandmarkPose& landmark : joined->landmark_poses()) {
-    known_landmarks.insert(landmark.landmark_id());
+// As AppendMap, of the stored graph.
+absl::Status AppendStored(const MapPart& part, proto::PoseGraph stored,
+                          proto::PoseGraph* const joined) {
+  for (proto::Trajectory& trajectory : *stored.mutable_trajectory()) {
+    const auto number = part.trajectories.find(trajectory.trajectory_id());
+    if (number == part.trajectories.end()) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(part.path, " has changed: it has got trajectory ",
+                       trajectory.trajectory_id()));
+    }
+    trajectory.set_trajectory_id(number->second);
   }
   for (proto::Constraint& constraint : *stored.mutable_constraint()) {
     Renumber(part, constraint.mutable_submap_id());
     Renumber(part, constraint.mutable_node_id());
   }
-  for (proto::Trajectory& trajectory : *stored.mutable_trajectory()) {
-    trajectory.set_trajectory_id(
-        part.trajectories.at(trajectory.trajectory_id()));
+  std::set<std::string> known_landmarks;
+  for (const proto::LandmarkPose& landmark : joined->landmark_poses()) {
+    known_landmarks.insert(landmark.landmark_id());
   }
   google::protobuf::RepeatedPtrField<proto::LandmarkPose> new_landmarks;
   for (proto::LandmarkPose& landmark : *stored.mutable_landmark_poses()) {
@@ -77,26 +69,58 @@ void AppendStored(const MapPart& part, proto::PoseGraph stored,
   }
   stored.mutable_landmark_poses()->Swap(&new_landmarks);
   joined->MergeFrom(stored);
+  return absl::OkStatus();
+}
+
+void AppendOptions(const MapPart& part,
+                   proto::AllTrajectoryBuilderOptions options,
+                   proto::AllTrajectoryBuilderOptions* const joined) {
+  for (proto::TrajectoryBuilderOptionsWithSensorIds& entry :
+       *options.mutable_options_with_sensor_ids()) {
+    if (!entry.trajectory_builder_options().has_initial_trajectory_pose()) {
+      continue;
+    }
+    proto::TrajectoryBuilderOptions& builder =
+        *entry.mutable_trajectory_builder_options();
+    const auto number = part.trajectories.find(
+        builder.initial_trajectory_pose().to_trajectory_id());
+    // Cartographer keeps what a trajectory once began at, even where that has
+    // been deleted since; a number that now means another would mislead.
+    if (number == part.trajectories.end()) {
+      builder.clear_initial_trajectory_pose();
+    } else {
+      builder.mutable_initial_trajectory_pose()->set_to_trajectory_id(
+          number->second);
+    }
+  }
+  joined->MergeFrom(options);
 }
 
 // Reads a part record by record, one ahead. The records are checked as
 // ReadMap() does.
 class PartReader {
  public:
+  // Goes to the first record behind the beginning, to which it is added.
   [[nodiscard]] static absl::StatusOr<PartReader> Open(
-      const MapPart& part, const ProgressCallback& on_progress) {
+      const MapPart& part, const ProgressCallback& on_progress,
+      Beginning* const beginning) {
     absl::StatusOr<MapReader> reader =
         MapReader::Open(part.path, {}, on_progress);
     if (!reader.ok()) return reader.status();
     PartReader result(part, *std::move(reader));
+    beginning->header.set_format_version(
+        std::max(beginning->header.format_version(),
+                 static_cast<uint32_t>(result.reader_.format_version())));
     absl::Status status = result.Advance();
     if (status.ok()) {
-      result.pose_graph_ = result.data().pose_graph();
-      status = result.CheckTrajectories();
+      status = AppendStored(part, result.data().pose_graph(),
+                            beginning->pose_graph.mutable_pose_graph());
     }
     if (status.ok()) status = result.Advance();
     if (status.ok()) {
-      result.options_ = result.data().all_trajectory_builder_options();
+      AppendOptions(
+          part, result.data().all_trajectory_builder_options(),
+          beginning->options.mutable_all_trajectory_builder_options());
       status = result.Advance();
     }
     if (!status.ok()) return status;
@@ -105,45 +129,13 @@ class PartReader {
 
   [[nodiscard]] bool is_at_end() const { return is_at_end_; }
   [[nodiscard]] const proto::SerializedData& data() const {
-    return reader_.record().data();
-  }
-  [[nodiscard]] int format_version() const {
-    return reader_.record().format_version();
+    return reader_.data();
   }
   [[nodiscard]] absl::Status Advance() {
     const absl::StatusOr<bool> has_record = reader_.Next();
     if (!has_record.ok()) return has_record.status();
     is_at_end_ = !*has_record;
     return absl::OkStatus();
-  }
-
-  // Adds the part's pose graph, which is then gone, under new numbers.
-  void MovePoseGraph(proto::PoseGraph* const joined) {
-    AppendStored(*part_, std::move(pose_graph_), joined);
-  }
-
-  // The options under new numbers.
-  [[nodiscard]] proto::AllTrajectoryBuilderOptions Options() const {
-    proto::AllTrajectoryBuilderOptions options = options_;
-    for (proto::TrajectoryBuilderOptionsWithSensorIds& entry :
-         *options.mutable_options_with_sensor_ids()) {
-      if (!entry.trajectory_builder_options().has_initial_trajectory_pose()) {
-        continue;
-      }
-      proto::InitialTrajectoryPose& pose =
-          *entry.mutable_trajectory_builder_options()
-               ->mutable_initial_trajectory_pose();
-      const auto number = part_->trajectories.find(pose.to_trajectory_id());
-      // Cartographer keeps what a trajectory once began at, even where that has
-      // been deleted since; a number that now means another would mislead.
-      if (number == part_->trajectories.end()) {
-        entry.mutable_trajectory_builder_options()
-            ->clear_initial_trajectory_pose();
-      } else {
-        pose.set_to_trajectory_id(number->second);
-      }
-    }
-    return options;
   }
 
   // Adds the attitudes of nodes that have come so far under their new numbers.
@@ -157,13 +149,13 @@ class PartReader {
   [[nodiscard]] absl::Status WriteRecord(
       const std::map<int, Rigid3>& T_joined_map,
       RecordWriter* const writer) const {
-    const StateReader& record = reader_.record();
     const std::optional<int> trajectory = TrajectoryOfRecord(data());
-    if (!trajectory) return writer->WriteCompressed(record.compressed());
+    if (!trajectory) return writer->WriteCompressed(reader_.compressed());
     const auto number = part_->trajectories.find(*trajectory);
     if (number == part_->trajectories.end()) {
-      return record.Corrupted(absl::StrCat("is of trajectory ", *trajectory,
-                                           ", which is not in the pose graph"));
+      return reader_.Corrupted(
+          absl::StrCat("is of trajectory ", *trajectory,
+                       ", which is not in the pose graph"));
     }
     if (data().trajectory_data().has_fixed_frame_origin_in_map()) {
       const absl::StatusOr<std::string> moved =
@@ -171,26 +163,15 @@ class PartReader {
       return moved.ok() ? writer->Write(*moved) : moved.status();
     }
     if (number->first == number->second) {
-      return writer->WriteCompressed(record.compressed());
+      return writer->WriteCompressed(reader_.compressed());
     }
     return writer->Write(
-        WithTrajectory(record.record(), data(), number->second));
+        WithTrajectory(reader_.record(), data(), number->second));
   }
 
  private:
   PartReader(const MapPart& part, MapReader reader)
       : part_(&part), reader_(std::move(reader)) {}
-
-  [[nodiscard]] absl::Status CheckTrajectories() const {
-    for (const proto::Trajectory& trajectory : pose_graph_.trajectory()) {
-      if (part_->trajectories.count(trajectory.trajectory_id()) == 0) {
-        return absl::FailedPreconditionError(
-            absl::StrCat(part_->path, " has changed: it has got trajectory ",
-                         trajectory.trajectory_id()));
-      }
-    }
-    return absl::OkStatus();
-  }
 
   [[nodiscard]] absl::StatusOr<std::string> MovedTrajectoryData(
       const int number, const std::map<int, Rigid3>& T_joined_map) const {
@@ -202,8 +183,8 @@ class PartReader {
           *moved.mutable_trajectory_data()->mutable_fixed_frame_origin_in_map();
       const absl::StatusOr<Rigid3> before = FromProto(origin);
       if (!before.ok()) {
-        return reader_.record().Corrupted(absl::StrCat(
-            "has an origin of GPS that ", before.status().message()));
+        return reader_.Corrupted(absl::StrCat("has an origin of GPS that ",
+                                              before.status().message()));
       }
       origin = ToProto(T->second * *before);
     }
@@ -212,8 +193,6 @@ class PartReader {
 
   const MapPart* part_;
   MapReader reader_;
-  proto::PoseGraph pose_graph_;
-  proto::AllTrajectoryBuilderOptions options_;
   bool is_at_end_ = false;
 };
 
@@ -231,88 +210,33 @@ std::map<int, Rigid3> FirstNodesMoved(const PoseGraph& before,
   return moved;
 }
 
-absl::Status WriteMessage(const google::protobuf::MessageLite& message,
-                          const std::string& output, const char* const name,
-                          RecordWriter* const writer) {
-  std::string record;
-  if (!message.SerializeToString(&record)) {
-    return absl::ResourceExhaustedError(absl::StrCat(
-        "cannot write ", output, ": its ", name, " is larger than 2 GiB"));
-  }
-  return writer->Write(record);
-}
-
-// All parts, ready to be read on behind the options.
-absl::StatusOr<std::vector<PartReader>> OpenParts(
-    const std::vector<MapPart>& parts,
-    const std::vector<ProgressCallback>& on_progress) {
-  std::vector<PartReader> readers;
-  for (size_t k = 0; k < parts.size(); ++k) {
-    absl::StatusOr<PartReader> reader =
-        PartReader::Open(parts[k], on_progress[k]);
-    if (!reader.ok()) return reader.status();
-    readers.push_back(*std::move(reader));
-  }
-  return readers;
-}
-
-// The progress of each part, of which the mean is that of the whole.
-class MeanProgress {
- public:
-  MeanProgress(const size_t num_parts, const ProgressCallback& on_progress)
-      : fractions_(num_parts, 0.) {
-    for (size_t k = 0; k < num_parts; ++k) {
-      callbacks_.emplace_back();
-      if (!on_progress) continue;
-      callbacks_.back() = [this, k, &on_progress](const double fraction) {
-        fractions_[k] = fraction;
-        on_progress(std::accumulate(fractions_.begin(), fractions_.end(), 0.) /
-                    static_cast<double>(fractions_.size()));
-      };
-    }
-  }
-  MeanProgress(const MeanProgress&) = delete;
-  MeanProgress& operator=(const MeanProgress&) = delete;
-
-  [[nodiscard]] const std::vector<ProgressCallback>& callbacks() const {
-    return callbacks_;
-  }
-
- private:
-  std::vector<double> fractions_;
-  std::vector<ProgressCallback> callbacks_;
-};
-
-// Writes header, pose graph and options; returns how the parts were moved.
+// Returns how the parts were moved.
 absl::StatusOr<std::map<int, Rigid3>> WriteBeginning(
     const PoseGraph& pose_graph, const Attitudes& attitudes,
-    const std::string& output, std::vector<PartReader>* const parts,
+    const std::string& output, Beginning* const beginning,
     RecordWriter* const writer) {
-  proto::SerializationHeader header;
-  proto::SerializedData graph_record, options_record;
-  for (PartReader& part : *parts) {
-    header.set_format_version(std::max(
-        header.format_version(), static_cast<uint32_t>(part.format_version())));
-    part.MovePoseGraph(graph_record.mutable_pose_graph());
-    options_record.mutable_all_trajectory_builder_options()->MergeFrom(
-        part.Options());
-  }
-  const PoseGraph before = ToPoseGraph(graph_record.pose_graph(), attitudes);
+  proto::PoseGraph* const stored = beginning->pose_graph.mutable_pose_graph();
+  const PoseGraph before = ToPoseGraph(*stored, attitudes).value();
   const absl::StatusOr<bool> changed =
-      UpdatePoseGraph(before, pose_graph, graph_record.mutable_pose_graph());
+      UpdatePoseGraph(before, pose_graph, stored);
   if (!changed.ok()) {
     return absl::InvalidArgumentError(absl::StrCat("cannot write ", output,
                                                    ": the joined map ",
                                                    changed.status().message()));
   }
-  absl::Status status = WriteMessage(header, output, "header", writer);
-  if (status.ok()) {
-    status = WriteMessage(graph_record, output, "pose graph", writer);
+  const std::pair<const char*, const google::protobuf::MessageLite*>
+      messages[] = {{"header", &beginning->header},
+                    {"pose graph", &beginning->pose_graph},
+                    {"list of options", &beginning->options}};
+  for (const auto& [name, message] : messages) {
+    std::string record;
+    if (!message->SerializeToString(&record)) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          "cannot write ", output, ": its ", name, " is larger than 2 GiB"));
+    }
+    const absl::Status status = writer->Write(record);
+    if (!status.ok()) return status;
   }
-  if (status.ok()) {
-    status = WriteMessage(options_record, output, "list of options", writer);
-  }
-  if (!status.ok()) return status;
   return FirstNodesMoved(before, pose_graph);
 }
 
@@ -343,19 +267,31 @@ absl::StatusOr<WrittenMap> JoinMaps(const std::vector<MapPart>& parts,
                                     const Attitudes& attitudes,
                                     const std::string& output,
                                     const ProgressCallback& on_progress) {
-  const MeanProgress progress(parts.size(), on_progress);
-  absl::StatusOr<std::vector<PartReader>> readers =
-      OpenParts(parts, progress.callbacks());
-  if (!readers.ok()) return readers.status();
+  // Of each part, of which the mean is that of the whole.
+  std::vector<double> fractions(parts.size(), 0.);
+  Beginning beginning;
+  std::vector<PartReader> readers;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    const auto on_part = [&fractions, &on_progress, k](const double fraction) {
+      fractions[k] = fraction;
+      if (!on_progress) return;
+      on_progress(std::accumulate(fractions.begin(), fractions.end(), 0.) /
+                  static_cast<double>(fractions.size()));
+    };
+    absl::StatusOr<PartReader> reader =
+        PartReader::Open(parts[k], on_part, &beginning);
+    if (!reader.ok()) return reader.status();
+    readers.push_back(*std::move(reader));
+  }
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
   if (!writer.ok()) return writer.status();
   const absl::StatusOr<std::map<int, Rigid3>> T_joined_map =
-      WriteBeginning(pose_graph, attitudes, output, &*readers, &*writer);
+      WriteBeginning(pose_graph, attitudes, output, &beginning, &*writer);
   if (!T_joined_map.ok()) return T_joined_map.status();
-  const absl::Status status = WriteRecords(*T_joined_map, &*readers, &*writer);
+  const absl::Status status = WriteRecords(*T_joined_map, &readers, &*writer);
   if (!status.ok()) return status;
   WrittenMap map{*std::move(writer), {}};
-  for (const PartReader& reader : *readers) {
+  for (const PartReader& reader : readers) {
     reader.AppendAttitudes(&map.attitudes);
   }
   return map;
@@ -389,18 +325,23 @@ std::vector<MapPart> NumberTrajectories(
   return parts;
 }
 
-SubmapId Renumbered(const MapPart& part, const SubmapId& id) {
-  return {part.trajectories.at(id.trajectory), id.index};
-}
-
-NodeId Renumbered(const MapPart& part, const NodeId& id) {
-  return {part.trajectories.at(id.trajectory), id.index};
-}
-
 void AppendMap(const MapPart& part, const MapState& map,
                MapState* const joined) {
   joined->format_version = std::max(joined->format_version, map.format_version);
-  AppendPoseGraph(part, map.pose_graph, &joined->pose_graph);
+  PoseGraph& graph = joined->pose_graph;
+  for (const auto& [id, pose] : map.pose_graph.submap_poses) {
+    CHECK(graph.submap_poses.emplace(Renumbered(part, id), pose).second);
+  }
+  for (const auto& [id, node] : map.pose_graph.nodes) {
+    CHECK(graph.nodes.emplace(Renumbered(part, id), node).second);
+  }
+  for (Constraint constraint : map.pose_graph.constraints) {
+    constraint.submap = Renumbered(part, constraint.submap);
+    constraint.node = Renumbered(part, constraint.node);
+    graph.constraints.push_back(constraint);
+  }
+  graph.landmark_poses.insert(map.pose_graph.landmark_poses.begin(),
+                              map.pose_graph.landmark_poses.end());
   for (const auto& [id, submap] : map.submaps) {
     CHECK(joined->submaps.emplace(Renumbered(part, id), submap).second);
   }

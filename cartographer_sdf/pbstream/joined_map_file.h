@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "absl/status/statusor.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
@@ -30,9 +29,11 @@ struct MapPart {
     const std::vector<std::string>& paths,
     const std::vector<const MapState*>& maps);
 
-// Ids under the new numbers.
-[[nodiscard]] SubmapId Renumbered(const MapPart& part, const SubmapId& id);
-[[nodiscard]] NodeId Renumbered(const MapPart& part, const NodeId& id);
+// A SubmapId or NodeId under its new number.
+template <typename IdType>
+[[nodiscard]] IdType Renumbered(const MapPart& part, const IdType& id) {
+  return {part.trajectories.at(id.trajectory), id.index};
+}
 
 // Adds a map under its new numbers. Of a landmark that is known already, the
 // pose stays: to the host, equal names are one landmark.

@@ -16,7 +16,6 @@
 #include <map>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -24,7 +23,6 @@
 #include "cartographer_sdf/execution/progress.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/submap_id.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 
@@ -73,7 +71,7 @@ struct MapVisitor {
     const ProgressCallback& on_progress = {});
 
 // The filtered range data of the given nodes; a node without data is absent.
-// A reading of its own: who reads the map anyway is better off with a visitor.
+// ReadMap() with a visitor: who reads the map anyway is better off with one.
 [[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
     const std::string& path, const std::set<NodeId>& nodes,
     const ProgressCallback& on_progress = {});
@@ -95,28 +93,16 @@ struct MapVisitor {
 // are not finite, or where ReadMap(input) fails. Odometry is not written.
 //
 // Decompresses the input once, and twice where `pose_graph` lacks nodes or has
-// other gravity alignments than the input, see assumed_attitudes.h.
+// other gravity alignments than the input, see map_reader.h.
 [[nodiscard]] absl::Status WriteMap(const std::string& input,
                                     const std::string& output,
                                     const PoseGraph& pose_graph,
                                     const ProgressCallback& on_progress = {});
 
-// A map that is written but does not appear before Commit(); without it, it
-// leaves nothing behind.
-class PreparedMap {
- public:
-  explicit PreparedMap(RecordWriter file) : file_(std::move(file)) {}
-
-  // At most once.
-  [[nodiscard]] absl::Status Commit() { return file_.Commit(); }
-
- private:
-  RecordWriter file_;
-};
-
 // WriteMap() in two steps, for those who have something to do between, and who
-// want to see the content of the input as it passes.
-[[nodiscard]] absl::StatusOr<PreparedMap> PrepareMap(
+// want to see the content of the input as it passes. The map does not appear
+// before Commit() of the result; without it, it leaves nothing behind.
+[[nodiscard]] absl::StatusOr<RecordWriter> PrepareMap(
     const std::string& input, const std::string& output,
     const PoseGraph& pose_graph, const MapVisitor& visitor = {},
     const ProgressCallback& on_progress = {});

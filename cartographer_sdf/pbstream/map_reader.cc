@@ -3,6 +3,8 @@
 
 #include "cartographer_sdf/pbstream/map_reader.h"
 
+#include <algorithm>
+
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/grid_conversion.h"
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
@@ -15,29 +17,79 @@ using Kind = proto::SerializedData::DataCase;
 
 constexpr char kPoseGraphName[] = "pose graph";
 constexpr char kOptionsName[] = "options of trajectory builders";
+// With and without histograms in submaps, which are of no use in 2D.
+constexpr uint32_t kMinFormatVersion = 1;
+constexpr uint32_t kMaxFormatVersion = 2;
+
+// The field that a record has, "unknown" for any other.
+std::string KindName(const proto::SerializedData& data) {
+  if (data.data_case() == Kind::DATA_NOT_SET) return "unknown";
+  return data.GetDescriptor()->FindFieldByNumber(data.data_case())->name();
+}
+
+// Whether nodes have the same gravity alignment in both; one that is absent has
+// none.
+bool AreSame(Attitudes a, Attitudes b) {
+  for (const auto& entry : a) b[entry.first];
+  for (const auto& entry : b) a[entry.first];
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](const auto& one, const auto& other) {
+                      return one.second.gravity_alignment.coeffs() ==
+                             other.second.gravity_alignment.coeffs();
+                    });
+}
 
 }  // namespace
 
 absl::StatusOr<MapReader> MapReader::Open(const std::string& path,
                                           MapVisitor visitor,
                                           const ProgressCallback& on_progress) {
-  absl::StatusOr<StateReader> records = StateReader::Open(path, on_progress);
+  absl::StatusOr<RecordReader> records = RecordReader::Open(path);
   if (!records.ok()) return records.status();
-  MapReader reader(*std::move(records), path, std::move(visitor));
-  reader.state_.format_version = reader.records_.format_version();
+  MapReader reader(*std::move(records));
+  reader.visitor_ = std::move(visitor);
+  reader.on_progress_ = on_progress;
+  const absl::Status status = reader.ReadHeader();
+  if (!status.ok()) return status;
   return reader;
 }
 
+absl::Status MapReader::ReadHeader() {
+  const absl::StatusOr<bool> has_header = records_.Read(&record_);
+  if (!has_header.ok()) return has_header.status();
+  if (!*has_header) {
+    return absl::DataLossError(absl::StrCat(
+        records_.path(), " is truncated: it ends before its header"));
+  }
+  proto::SerializationHeader header;
+  if (!header.ParseFromString(record_)) return Corrupted("is no header");
+  if (header.format_version() < kMinFormatVersion ||
+      header.format_version() > kMaxFormatVersion) {
+    return absl::UnimplementedError(absl::StrCat(
+        records_.path(), " has format version ", header.format_version(),
+        ", but only versions 1 and 2 are supported"));
+  }
+  state_.format_version = static_cast<int>(header.format_version());
+  return absl::OkStatus();
+}
+
 absl::StatusOr<bool> MapReader::Next() {
-  const absl::StatusOr<bool> has_record = records_.Next();
-  if (!has_record.ok()) return has_record.status();
+  const absl::StatusOr<bool> has_record = records_.Read(&record_);
+  if (!has_record.ok()) return has_record;
+  if (on_progress_) {
+    on_progress_(static_cast<double>(records_.position()) /
+                 static_cast<double>(records_.size()));
+  }
   if (!*has_record) {
     if (num_records_ >= 2) return false;
     return absl::DataLossError(
-        absl::StrCat(path_, " is truncated: it ends before its ",
+        absl::StrCat(records_.path(), " is truncated: it ends before its ",
                      num_records_ == 0 ? kPoseGraphName : kOptionsName));
   }
-  ++state_.num_records[records_.kind()];
+  if (!data_.ParseFromString(record_)) {
+    return Corrupted("is no valid protocol buffer");
+  }
+  ++state_.num_records[KindName(data_)];
   ++num_records_;
   const absl::Status status = num_records_ == 1   ? ReadPoseGraph()
                               : num_records_ == 2 ? ReadOptions()
@@ -47,29 +99,28 @@ absl::StatusOr<bool> MapReader::Next() {
 }
 
 MapState MapReader::Finish() {
-  PoseGraph& graph = state_.pose_graph;
-  graph = ToPoseGraph(stored_pose_graph_, attitudes_);
-  SetRelativeOdometry(odometry_->poses(), &graph.nodes);
+  state_.pose_graph = ToPoseGraph(stored_pose_graph_, attitudes_).value();
+  SetRelativeOdometry(odometry_->poses(), &state_.pose_graph.nodes);
   return std::move(state_);
 }
 
 absl::Status MapReader::Expect(const Kind kind, const char* const name) const {
-  if (records_.data().data_case() == kind) return absl::OkStatus();
-  return records_.Corrupted(absl::StrCat("is of the kind ", records_.kind(),
-                                         " where the ", name, " must be"));
+  if (data_.data_case() == kind) return absl::OkStatus();
+  return Corrupted(absl::StrCat("is of the kind ", KindName(data_),
+                                " where the ", name, " must be"));
 }
 
 absl::Status MapReader::ReadPoseGraph() {
-  absl::Status status = Expect(Kind::kPoseGraph, kPoseGraphName);
+  const absl::Status status = Expect(Kind::kPoseGraph, kPoseGraphName);
   if (!status.ok()) return status;
-  stored_pose_graph_ = records_.data().pose_graph();
-  status = CheckPoseGraph(stored_pose_graph_);
-  if (!status.ok()) return records_.Corrupted(status.message());
+  stored_pose_graph_ = data_.pose_graph();
+  // Poses are preliminary: the attitudes of the nodes are not known yet.
+  absl::StatusOr<PoseGraph> graph = ToPoseGraph(stored_pose_graph_, {});
+  if (!graph.ok()) return Corrupted(graph.status().message());
+  state_.pose_graph = *std::move(graph);
   for (const proto::Trajectory& trajectory : stored_pose_graph_.trajectory()) {
     state_.trajectories.push_back(trajectory.trajectory_id());
   }
-  // Poses are preliminary: the attitudes of the nodes are not known yet.
-  state_.pose_graph = ToPoseGraph(stored_pose_graph_, {});
   odometry_.emplace(state_.pose_graph.nodes);
   return absl::OkStatus();
 }
@@ -78,30 +129,29 @@ absl::Status MapReader::ReadOptions() {
   const absl::Status status =
       Expect(Kind::kAllTrajectoryBuilderOptions, kOptionsName);
   if (!status.ok()) return status;
-  const int num_options = records_.data()
-                              .all_trajectory_builder_options()
-                              .options_with_sensor_ids_size();
+  const int num_options =
+      data_.all_trajectory_builder_options().options_with_sensor_ids_size();
   const size_t num_trajectories = state_.trajectories.size();
   if (static_cast<size_t>(num_options) == num_trajectories) {
     return absl::OkStatus();
   }
   return absl::DataLossError(absl::StrCat(
-      path_, " is corrupted: its pose graph has ", num_trajectories,
+      records_.path(), " is corrupted: its pose graph has ", num_trajectories,
       " trajectories, but it has options for ", num_options, " of them"));
 }
 
 absl::Status MapReader::ReadOther() {
-  switch (records_.data().data_case()) {
+  switch (data_.data_case()) {
     case Kind::kPoseGraph:
-      return records_.Corrupted("is a second pose graph");
+      return Corrupted("is a second pose graph");
     case Kind::kAllTrajectoryBuilderOptions:
-      return records_.Corrupted("is a second list of options");
+      return Corrupted("is a second list of options");
     case Kind::kSubmap:
-      return ReadSubmap(records_.data().submap());
+      return ReadSubmap(data_.submap());
     case Kind::kNode:
-      return ReadNode(records_.data().node());
+      return ReadNode(data_.node());
     case Kind::kOdometryData:
-      return ReadOdometry(records_.data().odometry_data());
+      return ReadOdometry(data_.odometry_data());
     default:
       return absl::OkStatus();
   }
@@ -109,64 +159,58 @@ absl::Status MapReader::ReadOther() {
 
 absl::Status MapReader::ReadSubmap(const proto::Submap& stored) {
   if (stored.has_submap_3d()) {
-    return absl::UnimplementedError(
-        absl::StrCat(path_, " is a 3D map; only 2D maps are supported"));
+    return absl::UnimplementedError(absl::StrCat(
+        records_.path(), " is a 3D map; only 2D maps are supported"));
   }
   const SubmapId id{stored.submap_id().trajectory_id(),
                     stored.submap_id().index()};
-  const std::string name =
-      absl::StrCat("(submap ", id.trajectory, ",", id.index, ") ");
+  const std::string name = "(" + Name("submap", id) + ") ";
   if (state_.pose_graph.submap_poses.count(id) == 0) {
-    return records_.Corrupted(name + "is not in the pose graph");
+    return Corrupted(name + "is not in the pose graph");
   }
-  if (!stored.has_submap_2d()) return records_.Corrupted(name + "is empty");
+  if (state_.submaps.count(id) > 0) {
+    return Corrupted("is the second of " + Name("submap", id));
+  }
+  if (!stored.has_submap_2d()) return Corrupted(name + "is empty");
   const proto::Submap2D& submap = stored.submap_2d();
   const absl::StatusOr<Rigid3> local_pose = FromProto(submap.local_pose());
   if (!local_pose.ok()) {
-    return records_.Corrupted(
-        absl::StrCat(name, local_pose.status().message()));
+    return Corrupted(absl::StrCat(name, local_pose.status().message()));
   }
   SubmapSummary summary;
   summary.finished = submap.finished();
   summary.num_range_data = submap.num_range_data();
   summary.T_local_submap = Project2D(*local_pose);
-  if (!submap.has_grid()) return AddSubmap(id, summary);
+  if (!submap.has_grid()) {
+    state_.submaps.emplace(id, summary);
+    return absl::OkStatus();
+  }
   const absl::StatusOr<OccupancyGrid> grid =
       MakeOccupancyGrid(submap.grid(), summary.T_local_submap);
   if (!grid.ok()) {
-    return records_.Corrupted(absl::StrCat(name, grid.status().message()));
+    return Corrupted(absl::StrCat(name, grid.status().message()));
   }
   summary.is_tsdf = submap.grid().has_tsdf_2d();
   summary.geometry = grid->geometry;
   summary.num_known_cells = static_cast<int>(grid->known.count());
-  absl::Status status = AddSubmap(id, summary);
-  if (status.ok() && visitor_.on_submap) {
-    visitor_.on_submap(id, summary, *grid);
-  }
-  return status;
-}
-
-absl::Status MapReader::AddSubmap(const SubmapId& id,
-                                  const SubmapSummary& summary) {
-  if (state_.submaps.emplace(id, summary).second) return absl::OkStatus();
-  return records_.Corrupted(
-      absl::StrCat("is the second of submap ", id.trajectory, ",", id.index));
+  state_.submaps.emplace(id, summary);
+  if (visitor_.on_submap) visitor_.on_submap(id, summary, *grid);
+  return absl::OkStatus();
 }
 
 absl::Status MapReader::ReadNode(const proto::Node& stored) {
   const NodeId id{stored.node_id().trajectory_id(), stored.node_id().index()};
-  const std::string name =
-      absl::StrCat("(node ", id.trajectory, ",", id.index, ") ");
+  const std::string name = "(" + Name("node", id) + ") ";
   if (state_.pose_graph.nodes.count(id) == 0) {
-    return records_.Corrupted(name + "is not in the pose graph");
+    return Corrupted(name + "is not in the pose graph");
   }
   const absl::StatusOr<NodeAttitude> attitude =
       ReadNodeAttitude(stored.node_data());
   if (!attitude.ok()) {
-    return records_.Corrupted(absl::StrCat(name, attitude.status().message()));
+    return Corrupted(absl::StrCat(name, attitude.status().message()));
   }
   if (!attitudes_.emplace(id, *attitude).second) {
-    return records_.Corrupted(name + "is the second of this node");
+    return Corrupted(name + "is the second of this node");
   }
   const proto::NodeData& data = stored.node_data();
   if (!visitor_.on_point_cloud ||
@@ -176,7 +220,7 @@ absl::Status MapReader::ReadNode(const proto::Node& stored) {
   absl::StatusOr<PointCloud2> cloud =
       DecompressPointCloud(data.filtered_gravity_aligned_point_cloud());
   if (!cloud.ok()) {
-    return records_.Corrupted(absl::StrCat(name, cloud.status().message()));
+    return Corrupted(absl::StrCat(name, cloud.status().message()));
   }
   visitor_.on_point_cloud(id, *std::move(cloud));
   return absl::OkStatus();
@@ -184,10 +228,26 @@ absl::Status MapReader::ReadNode(const proto::Node& stored) {
 
 absl::Status MapReader::ReadOdometry(const proto::OdometryData& stored) {
   const absl::StatusOr<Rigid3> pose = FromProto(stored.odometry_data().pose());
-  if (!pose.ok()) return records_.Corrupted(pose.status().message());
+  if (!pose.ok()) return Corrupted(pose.status().message());
   const absl::Status status = odometry_->Add(
       stored.trajectory_id(), stored.odometry_data().timestamp(), *pose);
-  return status.ok() ? status : records_.Corrupted(status.message());
+  return status.ok() ? status : Corrupted(status.message());
+}
+
+absl::StatusOr<RecordWriter> WriteWithAssumedAttitudes(
+    const PoseGraph& pose_graph, const AssumingWriter& write) {
+  Attitudes assumed;
+  for (const auto& [id, node] : pose_graph.nodes) {
+    assumed[id].gravity_alignment = node.gravity_alignment;
+  }
+  constexpr int kMaxAttempts = 2;
+  for (int i = 0; i < kMaxAttempts; ++i) {
+    absl::StatusOr<WrittenMap> map = write(assumed);
+    if (!map.ok()) return map.status();
+    if (AreSame(assumed, map->attitudes)) return std::move(map->file);
+    assumed = std::move(map->attitudes);
+  }
+  return absl::AbortedError("the map changes while it is read");
 }
 
 }  // namespace cartographer_sdf

@@ -4,6 +4,7 @@
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_MAP_READER_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_MAP_READER_H_
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,7 +14,7 @@
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pbstream/node_odometry.h"
 #include "cartographer_sdf/pbstream/pose_graph_codec.h"
-#include "cartographer_sdf/pbstream/state_reader.h"
+#include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 
 namespace cartographer_sdf {
@@ -23,7 +24,7 @@ namespace cartographer_sdf {
 // second to the options, further ones to whatever the file has.
 class MapReader {
  public:
-  // Reads the header.
+  // Reads the header. `on_progress` may be empty.
   [[nodiscard]] static absl::StatusOr<MapReader> Open(
       const std::string& path, MapVisitor visitor,
       const ProgressCallback& on_progress);
@@ -32,8 +33,17 @@ class MapReader {
   // before the options is an error.
   [[nodiscard]] absl::StatusOr<bool> Next();
 
-  // The current record; the header at first.
-  [[nodiscard]] const StateReader& record() const { return records_; }
+  // Of the current record; its bytes, and as the file has them. At first those
+  // of the header.
+  [[nodiscard]] const proto::SerializedData& data() const { return data_; }
+  [[nodiscard]] const std::string& record() const { return record_; }
+  [[nodiscard]] const std::string& compressed() const {
+    return records_.compressed();
+  }
+  [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const {
+    return records_.Corrupted(problem);
+  }
+  [[nodiscard]] int format_version() const { return state_.format_version; }
   // Of the nodes whose records have come so far.
   [[nodiscard]] const Attitudes& attitudes() const { return attitudes_; }
 
@@ -41,11 +51,9 @@ class MapReader {
   [[nodiscard]] MapState Finish();
 
  private:
-  MapReader(StateReader records, const std::string& path, MapVisitor visitor)
-      : records_(std::move(records)),
-        path_(path),
-        visitor_(std::move(visitor)) {}
+  explicit MapReader(RecordReader records) : records_(std::move(records)) {}
 
+  [[nodiscard]] absl::Status ReadHeader();
   // That the current record is of this kind.
   [[nodiscard]] absl::Status Expect(proto::SerializedData::DataCase kind,
                                     const char* name) const;
@@ -53,20 +61,38 @@ class MapReader {
   [[nodiscard]] absl::Status ReadOptions();
   [[nodiscard]] absl::Status ReadOther();
   [[nodiscard]] absl::Status ReadSubmap(const proto::Submap& stored);
-  [[nodiscard]] absl::Status AddSubmap(const SubmapId& id,
-                                       const SubmapSummary& summary);
   [[nodiscard]] absl::Status ReadNode(const proto::Node& stored);
   [[nodiscard]] absl::Status ReadOdometry(const proto::OdometryData& stored);
 
-  StateReader records_;
-  std::string path_;
+  RecordReader records_;
   MapVisitor visitor_;
+  ProgressCallback on_progress_;
+  std::string record_;
+  proto::SerializedData data_;
   int num_records_ = 0;  // without the header
   MapState state_;
   proto::PoseGraph stored_pose_graph_;
   Attitudes attitudes_;
   std::optional<NodeOdometry> odometry_;  // from the pose graph on
 };
+
+// Writing a map while it is read. Its pose graph comes first in the file, but
+// to change it takes the nodes' gravity alignments, which come later, in the
+// nodes' own records. A pose graph that ReadMap() returned has them too; they
+// are assumed to be those of the file, and compared with them at its end.
+struct WrittenMap {
+  RecordWriter file;  // whole, to be committed
+  // What the nodes' records turned out to have.
+  Attitudes attitudes;
+};
+using AssumingWriter =
+    std::function<absl::StatusOr<WrittenMap>(const Attitudes& assumed)>;
+
+// Calls `write` with the gravity alignments of `pose_graph`, and once more with
+// the right ones where those were wrong: where `pose_graph` lacks nodes, or its
+// gravity alignments were changed. Fails as `write` does.
+[[nodiscard]] absl::StatusOr<RecordWriter> WriteWithAssumedAttitudes(
+    const PoseGraph& pose_graph, const AssumingWriter& write);
 
 }  // namespace cartographer_sdf
 

@@ -86,10 +86,8 @@ absl::StatusOr<PointCloud2> DecompressPointCloud(
     }
     const int* const header = value;
     value += kBlockHeaderSize;
-    if (absl::Status status = CheckBlockHeader(header, end - value);
-        !status.ok()) {
-      return status;
-    }
+    const absl::Status status = CheckBlockHeader(header, end - value);
+    if (!status.ok()) return status;
     for (const int* const block_end = value + header[0]; value != block_end;
          ++value) {
       if (*value < 0 || *value >= kPointLimit) {

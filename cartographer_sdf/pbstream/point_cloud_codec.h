@@ -9,7 +9,7 @@
 #define CARTOGRAPHER_SDF_PBSTREAM_POINT_CLOUD_CODEC_H_
 
 #include "absl/status/statusor.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 
 namespace cartographer_sdf {

@@ -26,6 +26,10 @@ template <typename IdType>
 [[nodiscard]] std::string Name(const char* const kind, const IdType& id) {
   return absl::StrCat(kind, " ", id.trajectory, ",", id.index);
 }
+[[nodiscard]] inline std::string Name(const char* const kind,
+                                      const std::string& id) {
+  return absl::StrCat(kind, " ", id);
+}
 
 // Normalises. An error unless the norm is a positive finite number.
 [[nodiscard]] absl::StatusOr<Eigen::Quaterniond> FromProto(

@@ -4,16 +4,22 @@
 #include "cartographer_sdf/pbstream/pose_graph_codec.h"
 
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
-#include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
+
+// Values of Constraint.tag in the file.
+constexpr int kIntraSubmapTag = 0;
+constexpr int kInterSubmapTag = 1;
 
 // Differences of times must not overflow [100 ns].
 constexpr int64_t kMaxTime = std::numeric_limits<int64_t>::max() / 2;
@@ -23,59 +29,25 @@ absl::Status Problem(const std::string& subject, const absl::Status& status) {
       absl::StrCat("has ", subject, ", which ", status.message()));
 }
 
-template <typename IdType>
-absl::Status CheckElement(const char* const kind, const IdType& id,
-                          const bool has_pose, const proto::Rigid3d& pose,
-                          std::set<IdType>* const ids) {
+// Of a submap or node that is not among those known so far.
+template <typename IdType, typename Element, typename Stored>
+absl::StatusOr<Rigid3> PoseOfNew(const char* const kind, const IdType& id,
+                                 const std::map<IdType, Element>& known,
+                                 const Stored& stored) {
   if (id.trajectory < 0 || id.index < 0) {
     return absl::DataLossError(
         absl::StrCat("has the invalid id of a ", Name(kind, id)));
   }
-  if (!ids->insert(id).second) {
+  if (known.count(id) > 0) {
     return absl::DataLossError(absl::StrCat("has ", Name(kind, id), " twice"));
   }
-  if (!has_pose) {
+  if (!stored.has_pose()) {
     return absl::DataLossError(
         absl::StrCat("has ", Name(kind, id), " without a pose"));
   }
-  const absl::Status status = FromProto(pose).status();
-  return status.ok() ? status : Problem(Name(kind, id), status);
-}
-
-SubmapId SubmapOf(const proto::Constraint& constraint) {
-  return {constraint.submap_id().trajectory_id(),
-          constraint.submap_id().index()};
-}
-
-NodeId NodeOf(const proto::Constraint& constraint) {
-  return {constraint.node_id().trajectory_id(), constraint.node_id().index()};
-}
-
-absl::Status CheckConstraint(const proto::Constraint& constraint,
-                             const std::set<SubmapId>& submaps,
-                             const std::set<NodeId>& nodes) {
-  const SubmapId submap = SubmapOf(constraint);
-  const NodeId node = NodeOf(constraint);
-  const std::string subject = absl::StrCat(
-      "a constraint of ", Name("submap", submap), " and ", Name("node", node));
-  if (submaps.count(submap) == 0 || nodes.count(node) == 0) {
-    return absl::DataLossError(
-        absl::StrCat("has ", subject, ", which are not both in it"));
-  }
-  if (constraint.tag() != kIntraSubmapTag &&
-      constraint.tag() != kInterSubmapTag) {
-    return absl::DataLossError(absl::StrCat(
-        "has ", subject, " with the unknown tag ", constraint.tag()));
-  }
-  for (const double weight :
-       {constraint.translation_weight(), constraint.rotation_weight()}) {
-    if (!std::isfinite(weight) || weight < 0.) {
-      return absl::DataLossError(
-          absl::StrCat("has ", subject, " with the weight ", weight));
-    }
-  }
-  const absl::Status status = FromProto(constraint.relative_pose()).status();
-  return status.ok() ? status : Problem(subject, status);
+  const absl::StatusOr<Rigid3> pose = FromProto(stored.pose());
+  if (!pose.ok()) return Problem(Name(kind, id), pose.status());
+  return pose;
 }
 
 Rigid2 GravityAligned(const Rigid3& T_a_tracking,
@@ -83,79 +55,253 @@ Rigid2 GravityAligned(const Rigid3& T_a_tracking,
   return Project2D(T_a_tracking * Rigid3::Rotation(gravity.conjugate()));
 }
 
-// Of a proto that passed the check.
-Rigid3 CheckedPose(const proto::Rigid3d& pose) {
-  const absl::StatusOr<Rigid3> result = FromProto(pose);
-  CHECK(result.ok()) << result.status();
-  return *result;
-}
-
-absl::Status CheckTrajectory(const proto::Trajectory& trajectory,
-                             std::set<SubmapId>* const submaps,
-                             std::set<NodeId>* const nodes) {
-  const int trajectory_id = trajectory.trajectory_id();
-  for (const proto::TrajectorySubmap& submap : trajectory.submap()) {
-    if (absl::Status status = CheckElement(
-            "submap", SubmapId{trajectory_id, submap.submap_index()},
-            submap.has_pose(), submap.pose(), submaps);
-        !status.ok()) {
-      return status;
-    }
+absl::Status AddTrajectory(const proto::Trajectory& trajectory,
+                           const Attitudes& attitudes, PoseGraph* const graph) {
+  for (const proto::TrajectorySubmap& stored : trajectory.submap()) {
+    const SubmapId id{trajectory.trajectory_id(), stored.submap_index()};
+    const absl::StatusOr<Rigid3> pose =
+        PoseOfNew("submap", id, graph->submap_poses, stored);
+    if (!pose.ok()) return pose.status();
+    graph->submap_poses.emplace(id, Project2D(*pose));
   }
-  for (const proto::TrajectoryNode& node : trajectory.node()) {
-    if (absl::Status status =
-            CheckElement("node", NodeId{trajectory_id, node.node_index()},
-                         node.has_pose(), node.pose(), nodes);
-        !status.ok()) {
-      return status;
-    }
-    if (node.timestamp() < -kMaxTime || node.timestamp() > kMaxTime) {
+  for (const proto::TrajectoryNode& stored : trajectory.node()) {
+    const NodeId id{trajectory.trajectory_id(), stored.node_index()};
+    const absl::StatusOr<Rigid3> pose =
+        PoseOfNew("node", id, graph->nodes, stored);
+    if (!pose.ok()) return pose.status();
+    if (stored.timestamp() < -kMaxTime || stored.timestamp() > kMaxTime) {
       return absl::DataLossError(
-          absl::StrCat("has a node with time ", node.timestamp()));
+          absl::StrCat("has a node with time ", stored.timestamp()));
+    }
+    Node& node = graph->nodes[id];
+    node.time = stored.timestamp();
+    if (const auto it = attitudes.find(id); it != attitudes.end()) {
+      const auto& [gravity_alignment, local_pose] = it->second;
+      node.gravity_alignment = gravity_alignment;
+      if (local_pose) {
+        node.T_local_node = GravityAligned(*local_pose, gravity_alignment);
+      }
+    }
+    node.T_map_node = GravityAligned(*pose, node.gravity_alignment);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status AddConstraint(const proto::Constraint& stored,
+                           PoseGraph* const graph) {
+  const SubmapId submap{stored.submap_id().trajectory_id(),
+                        stored.submap_id().index()};
+  const NodeId id{stored.node_id().trajectory_id(), stored.node_id().index()};
+  const auto subject = [&] {
+    return absl::StrCat("a constraint of ", Name("submap", submap), " and ",
+                        Name("node", id));
+  };
+  const auto node = graph->nodes.find(id);
+  if (graph->submap_poses.count(submap) == 0 || node == graph->nodes.end()) {
+    return absl::DataLossError(
+        absl::StrCat("has ", subject(), ", which are not both in it"));
+  }
+  if (stored.tag() != kIntraSubmapTag && stored.tag() != kInterSubmapTag) {
+    return absl::DataLossError(absl::StrCat(
+        "has ", subject(), " with the unknown tag ", stored.tag()));
+  }
+  for (const double weight :
+       {stored.translation_weight(), stored.rotation_weight()}) {
+    if (!std::isfinite(weight) || weight < 0.) {
+      return absl::DataLossError(
+          absl::StrCat("has ", subject(), " with the weight ", weight));
+    }
+  }
+  const absl::StatusOr<Rigid3> pose = FromProto(stored.relative_pose());
+  if (!pose.ok()) return Problem(subject(), pose.status());
+  graph->constraints.push_back(
+      {submap, id, GravityAligned(*pose, node->second.gravity_alignment),
+       stored.translation_weight(), stored.rotation_weight(),
+       stored.tag() == kInterSubmapTag ? Constraint::Tag::kInterSubmap
+                                       : Constraint::Tag::kIntraSubmap});
+  return absl::OkStatus();
+}
+
+Rigid3 Tracking(const Rigid2& T_a_node, const Eigen::Quaterniond& gravity) {
+  return Embed3D(T_a_node) * Rigid3::Rotation(gravity);
+}
+
+bool IsFinite(const Rigid3& pose) {
+  return (pose.translation.array().abs() <= kMaxCoordinate).all() &&
+         std::abs(pose.rotation.norm() - 1.) < 0.5;
+}
+
+// Of a weight, which is not negative either.
+bool IsFinite(const double weight) {
+  return std::isfinite(weight) && weight >= 0.;
+}
+
+bool IsFinite(const Rigid2& pose) {
+  return (pose.translation().array().abs() <= kMaxCoordinate).all() &&
+         std::isfinite(pose.rotation());
+}
+
+bool IsSame(const Rigid2& a, const Rigid2& b) {
+  return a.translation() == b.translation() && a.rotation() == b.rotation();
+}
+
+bool IsSame(const Rigid3& a, const Rigid3& b) {
+  return a.translation == b.translation &&
+         a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+// Constraints of the same kind between the same submap and node.
+using ConstraintKey = std::tuple<SubmapId, NodeId, Constraint::Tag>;
+
+ConstraintKey KeyOf(const Constraint& constraint) {
+  return {constraint.submap, constraint.node, constraint.tag};
+}
+
+absl::Status CheckWantedConstraint(const PoseGraph& graph,
+                                   const Constraint& constraint) {
+  const std::string subject =
+      absl::StrCat("the constraint of ", Name("submap", constraint.submap),
+                   " and ", Name("node", constraint.node));
+  if (graph.submap_poses.count(constraint.submap) == 0 ||
+      graph.nodes.count(constraint.node) == 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("does not have both ends of ", subject));
+  }
+  if (!IsFinite(constraint.T_submap_node) ||
+      !IsFinite(constraint.translation_weight) ||
+      !IsFinite(constraint.rotation_weight)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("would have numbers that are not finite in ", subject));
+  }
+  return absl::OkStatus();
+}
+
+// Writes what differs from `before`, null where the constraint is new; returns
+// whether anything did.
+bool UpdateConstraint(const Constraint* const before, const Constraint& after,
+                      const Eigen::Quaterniond& gravity,
+                      proto::Constraint* const stored) {
+  const bool same_pose =
+      before != nullptr && IsSame(before->T_submap_node, after.T_submap_node);
+  if (!same_pose) {
+    *stored->mutable_relative_pose() =
+        ToProto(Tracking(after.T_submap_node, gravity));
+  }
+  stored->set_translation_weight(after.translation_weight);
+  stored->set_rotation_weight(after.rotation_weight);
+  return !same_pose || before->translation_weight != after.translation_weight ||
+         before->rotation_weight != after.rotation_weight;
+}
+
+// What does not change.
+proto::Constraint NewConstraint(const Constraint& constraint) {
+  proto::Constraint stored;
+  stored.mutable_submap_id()->set_trajectory_id(constraint.submap.trajectory);
+  stored.mutable_submap_id()->set_index(constraint.submap.index);
+  stored.mutable_node_id()->set_trajectory_id(constraint.node.trajectory);
+  stored.mutable_node_id()->set_index(constraint.node.index);
+  stored.set_tag(constraint.tag == Constraint::Tag::kInterSubmap
+                     ? kInterSubmapTag
+                     : kIntraSubmapTag);
+  return stored;
+}
+
+absl::StatusOr<bool> UpdateConstraints(const PoseGraph& before,
+                                       const PoseGraph& after,
+                                       proto::PoseGraph* const stored) {
+  std::map<ConstraintKey, std::deque<int>> remaining;
+  for (size_t i = 0; i < before.constraints.size(); ++i) {
+    remaining[KeyOf(before.constraints[i])].push_back(static_cast<int>(i));
+  }
+  bool changed = after.constraints.size() != before.constraints.size();
+  google::protobuf::RepeatedPtrField<proto::Constraint> updated;
+  for (const Constraint& constraint : after.constraints) {
+    const absl::Status status = CheckWantedConstraint(before, constraint);
+    if (!status.ok()) return status;
+    const Constraint* known = nullptr;
+    proto::Constraint target;
+    std::deque<int>& indices = remaining[KeyOf(constraint)];
+    if (indices.empty()) {
+      target = NewConstraint(constraint);
+    } else {
+      known = &before.constraints[indices.front()];
+      target = stored->constraint(indices.front());
+      changed |= indices.front() != updated.size();
+      indices.pop_front();
+    }
+    changed |= UpdateConstraint(
+        known, constraint, before.nodes.at(constraint.node).gravity_alignment,
+        &target);
+    *updated.Add() = std::move(target);
+  }
+  stored->mutable_constraint()->Swap(&updated);
+  return changed;
+}
+
+const Rigid2& PoseOf(const Rigid2& submap) { return submap; }
+const Rigid2& PoseOf(const Node& node) { return node.T_map_node; }
+const Rigid3& PoseOf(const Rigid3& landmark) { return landmark; }
+
+template <typename IdType, typename Element>
+absl::Status CheckPoses(const char* const kind,
+                        const std::map<IdType, Element>& before,
+                        const std::map<IdType, Element>& after) {
+  for (const auto& [id, element] : after) {
+    if (before.count(id) == 0) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("does not have ", Name(kind, id)));
+    }
+    if (!IsFinite(PoseOf(element))) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "would have a pose that is not finite of ", Name(kind, id)));
     }
   }
   return absl::OkStatus();
 }
 
-absl::Status CheckLandmarks(const proto::PoseGraph& stored) {
-  std::set<std::string> ids;
-  for (const proto::LandmarkPose& landmark : stored.landmark_poses()) {
-    if (!ids.insert(landmark.landmark_id()).second) {
-      return absl::DataLossError("has a landmark twice");
+// The pose of `after` where it has one that differs, else null.
+template <typename IdType, typename Element>
+auto NewPose(const std::map<IdType, Element>& before,
+             const std::map<IdType, Element>& after, const IdType& id) {
+  const auto it = after.find(id);
+  return it == after.end() || IsSame(PoseOf(it->second), PoseOf(before.at(id)))
+             ? nullptr
+             : &PoseOf(it->second);
+}
+
+// Returns whether any differed.
+bool UpdatePoses(const PoseGraph& before, const PoseGraph& after,
+                 proto::PoseGraph* const stored) {
+  bool changed = false;
+  const auto set = [&changed](const Rigid3& pose, proto::Rigid3d* const field) {
+    *field = ToProto(pose);
+    changed = true;
+  };
+  for (proto::Trajectory& trajectory : *stored->mutable_trajectory()) {
+    for (proto::TrajectorySubmap& submap : *trajectory.mutable_submap()) {
+      const SubmapId id{trajectory.trajectory_id(), submap.submap_index()};
+      if (const Rigid2* const T_map_submap =
+              NewPose(before.submap_poses, after.submap_poses, id)) {
+        set(Embed3D(*T_map_submap), submap.mutable_pose());
+      }
     }
-    const absl::Status status = FromProto(landmark.global_pose()).status();
-    if (!status.ok()) return Problem("a landmark", status);
+    for (proto::TrajectoryNode& node : *trajectory.mutable_node()) {
+      const NodeId id{trajectory.trajectory_id(), node.node_index()};
+      if (const Rigid2* const T_map_node =
+              NewPose(before.nodes, after.nodes, id)) {
+        set(Tracking(*T_map_node, before.nodes.at(id).gravity_alignment),
+            node.mutable_pose());
+      }
+    }
   }
-  return absl::OkStatus();
-}
-
-Node MakeNode(const proto::TrajectoryNode& stored,
-              const NodeAttitude& attitude) {
-  Node node;
-  node.time = stored.timestamp();
-  node.gravity_alignment = attitude.gravity_alignment;
-  node.T_map_node =
-      GravityAligned(CheckedPose(stored.pose()), node.gravity_alignment);
-  if (attitude.local_pose.has_value()) {
-    node.T_local_node =
-        GravityAligned(*attitude.local_pose, node.gravity_alignment);
+  for (proto::LandmarkPose& landmark : *stored->mutable_landmark_poses()) {
+    if (const Rigid3* const T_map_landmark =
+            NewPose(before.landmark_poses, after.landmark_poses,
+                    landmark.landmark_id())) {
+      set(*T_map_landmark, landmark.mutable_global_pose());
+    }
   }
-  return node;
-}
-
-Constraint MakeConstraint(const proto::Constraint& stored,
-                          const Eigen::Quaterniond& gravity) {
-  Constraint constraint;
-  constraint.submap = SubmapOf(stored);
-  constraint.node = NodeOf(stored);
-  constraint.T_submap_node =
-      GravityAligned(CheckedPose(stored.relative_pose()), gravity);
-  constraint.translation_weight = stored.translation_weight();
-  constraint.rotation_weight = stored.rotation_weight();
-  constraint.tag = stored.tag() == kInterSubmapTag
-                       ? Constraint::Tag::kInterSubmap
-                       : Constraint::Tag::kIntraSubmap;
-  return constraint;
+  return changed;
 }
 
 }  // namespace
@@ -176,55 +322,48 @@ absl::StatusOr<NodeAttitude> ReadNodeAttitude(const proto::NodeData& data) {
   return attitude;
 }
 
-absl::Status CheckPoseGraph(const proto::PoseGraph& stored) {
+absl::StatusOr<PoseGraph> ToPoseGraph(const proto::PoseGraph& stored,
+                                      const Attitudes& attitudes) {
+  PoseGraph graph;
+  absl::Status status;
   std::set<int> trajectories;
-  std::set<SubmapId> submaps;
-  std::set<NodeId> nodes;
   for (const proto::Trajectory& trajectory : stored.trajectory()) {
     if (!trajectories.insert(trajectory.trajectory_id()).second) {
       return absl::DataLossError(absl::StrCat(
           "has trajectory ", trajectory.trajectory_id(), " twice"));
     }
-    if (absl::Status status = CheckTrajectory(trajectory, &submaps, &nodes);
-        !status.ok()) {
-      return status;
-    }
+    status = AddTrajectory(trajectory, attitudes, &graph);
+    if (!status.ok()) return status;
   }
   for (const proto::Constraint& constraint : stored.constraint()) {
-    if (absl::Status status = CheckConstraint(constraint, submaps, nodes);
-        !status.ok()) {
-      return status;
-    }
-  }
-  return CheckLandmarks(stored);
-}
-
-PoseGraph ToPoseGraph(const proto::PoseGraph& stored,
-                      const Attitudes& attitudes) {
-  PoseGraph graph;
-  for (const proto::Trajectory& trajectory : stored.trajectory()) {
-    const int trajectory_id = trajectory.trajectory_id();
-    for (const proto::TrajectorySubmap& submap : trajectory.submap()) {
-      graph.submap_poses.emplace(SubmapId{trajectory_id, submap.submap_index()},
-                                 Project2D(CheckedPose(submap.pose())));
-    }
-    for (const proto::TrajectoryNode& node : trajectory.node()) {
-      const NodeId id{trajectory_id, node.node_index()};
-      const auto attitude = attitudes.find(id);
-      graph.nodes.emplace(
-          id, MakeNode(node, attitude == attitudes.end() ? NodeAttitude{}
-                                                         : attitude->second));
-    }
-  }
-  for (const proto::Constraint& constraint : stored.constraint()) {
-    graph.constraints.push_back(MakeConstraint(
-        constraint, graph.nodes.at(NodeOf(constraint)).gravity_alignment));
+    status = AddConstraint(constraint, &graph);
+    if (!status.ok()) return status;
   }
   for (const proto::LandmarkPose& landmark : stored.landmark_poses()) {
-    graph.landmark_poses.emplace(landmark.landmark_id(),
-                                 CheckedPose(landmark.global_pose()));
+    const absl::StatusOr<Rigid3> pose = FromProto(landmark.global_pose());
+    if (graph.landmark_poses.count(landmark.landmark_id()) > 0) {
+      return absl::DataLossError("has a landmark twice");
+    }
+    if (!pose.ok()) return Problem("a landmark", pose.status());
+    graph.landmark_poses.emplace(landmark.landmark_id(), *pose);
   }
   return graph;
+}
+
+absl::StatusOr<bool> UpdatePoseGraph(const PoseGraph& before,
+                                     const PoseGraph& after,
+                                     proto::PoseGraph* const stored) {
+  absl::Status status =
+      CheckPoses("submap", before.submap_poses, after.submap_poses);
+  status.Update(CheckPoses("node", before.nodes, after.nodes));
+  status.Update(
+      CheckPoses("landmark", before.landmark_poses, after.landmark_poses));
+  if (!status.ok()) return status;
+  const bool poses = UpdatePoses(before, after, stored);
+  const absl::StatusOr<bool> constraints =
+      UpdateConstraints(before, after, stored);
+  if (!constraints.ok()) return constraints;
+  return poses || *constraints;
 }
 
 }  // namespace cartographer_sdf

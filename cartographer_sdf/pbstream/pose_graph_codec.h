@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// From the stored pose graph, in space, to ours, in the plane. The message of
-// an error is a predicate ("has node 0,5 twice").
+// From the stored pose graph, in space, to ours, in the plane, and back. The
+// message of an error is a predicate ("has node 0,5 twice").
 //
 // The node frame of PoseGraph is the gravity-aligned one, so poses of nodes and
 // constraints are multiplied by the inverse of the node's gravity alignment,
@@ -15,17 +15,12 @@
 #include <map>
 #include <optional>
 
-#include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/geometry/rigid3.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 
 namespace cartographer_sdf {
-
-// Values of Constraint.tag in the file.
-constexpr int kIntraSubmapTag = 0;
-constexpr int kInterSubmapTag = 1;
 
 // Of a node's own record.
 struct NodeAttitude {
@@ -41,14 +36,24 @@ using Attitudes = std::map<NodeId, NodeAttitude>;
 [[nodiscard]] absl::StatusOr<NodeAttitude> ReadNodeAttitude(
     const proto::NodeData& data);
 
-// Whether ToPoseGraph can take it: ids unique, non-negative and known where
-// they are referred to, poses valid, weights finite and not negative.
-[[nodiscard]] absl::Status CheckPoseGraph(const proto::PoseGraph& stored);
+// Nodes without attitude get an identity gravity alignment. Odometry is left
+// absent. An error unless ids are unique, non-negative and known where they are
+// referred to, poses valid, weights finite and not negative; the attitudes make
+// no difference to that.
+[[nodiscard]] absl::StatusOr<PoseGraph> ToPoseGraph(
+    const proto::PoseGraph& stored, const Attitudes& attitudes);
 
-// `stored` must have passed the check. Nodes without attitude get an identity
-// gravity alignment. Odometry is left absent.
-[[nodiscard]] PoseGraph ToPoseGraph(const proto::PoseGraph& stored,
-                                    const Attitudes& attitudes);
+// Writes to `stored`, of which ToPoseGraph() made `before`, what differs in
+// `after`, as the host writes an optimised graph: poses in the plane times the
+// gravity alignment of `before`. What `after` lacks of nodes, submaps and
+// landmarks stays as it is; for constraints see WriteMap(). Returns whether
+// anything differed.
+//
+// An error if `after` has something that `before` has not, or numbers that are
+// not finite; its message is a predicate, and `stored` is then half written.
+[[nodiscard]] absl::StatusOr<bool> UpdatePoseGraph(const PoseGraph& before,
+                                                   const PoseGraph& after,
+                                                   proto::PoseGraph* stored);
 
 }  // namespace cartographer_sdf
 

@@ -110,9 +110,8 @@ absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
                                             num_records_, " are no record"));
   }
   std::array<char, kWordSize> word;
-  if (absl::Status status = ReadBytes(kWordSize, word.data()); !status.ok()) {
-    return status;
-  }
+  absl::Status status = ReadBytes(kWordSize, word.data());
+  if (!status.ok()) return status;
   ++num_records_;
   const uint64_t length = DecodeWord(word);
   if (length > static_cast<uint64_t>(size_ - position_)) {
@@ -120,10 +119,8 @@ absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
         path_, " is truncated: record ", num_records_, " has ", length,
         " bytes, but only ", size_ - position_, " are left in the file"));
   }
-  if (absl::Status status = Inflate(static_cast<int64_t>(length), record);
-      !status.ok()) {
-    return status;
-  }
+  status = Inflate(static_cast<int64_t>(length), record);
+  if (!status.ok()) return status;
   return true;
 }
 
@@ -148,9 +145,8 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
   while (result == Z_OK) {
     if (stream.avail_in == 0 && compressed_size > 0) {
       const int64_t count = std::min<int64_t>(compressed_size, kChunkSize);
-      if (absl::Status status = ReadBytes(count, input.data()); !status.ok()) {
-        return status;
-      }
+      const absl::Status status = ReadBytes(count, input.data());
+      if (!status.ok()) return status;
       compressed_size -= count;
       compressed_.append(input.data(), static_cast<size_t>(count));
       stream.next_in = reinterpret_cast<Bytef*>(input.data());
@@ -194,13 +190,10 @@ absl::StatusOr<RecordWriter> RecordWriter::Open(const std::string& path) {
         std::filesystem::weakly_canonical(path, error);
     if (!error) writer.target_path_ = target.string();
   }
-  if (absl::Status status = writer.CreateTemporaryFile(); !status.ok()) {
-    return status;
-  }
-  if (absl::Status status = writer.WriteBytes(EncodeWord(kMagic));
-      !status.ok()) {
-    return status;
-  }
+  absl::Status status = writer.CreateTemporaryFile();
+  if (!status.ok()) return status;
+  status = writer.WriteBytes(EncodeWord(kMagic));
+  if (!status.ok()) return status;
   return writer;
 }
 

@@ -17,83 +17,42 @@ using ::google::protobuf::UnknownField;
 using ::google::protobuf::UnknownFieldSet;
 using Kind = proto::SerializedData::DataCase;
 
-// Numbers of the fields that lead to the trajectory's number: those of
-// submaps and nodes are in an id of their own, that of others is the first
-// field.
-std::vector<int> PathToTrajectory(const Kind kind) {
-  if (kind == Kind::kSubmap || kind == Kind::kNode) return {kind, 1, 1};
-  return {kind, 1};
-}
-
-// A trajectory's new number and where it belongs, see PathToTrajectory.
-struct NewNumber {
-  std::vector<int> path;
-  int number;
-};
-
-bool IsLeaf(const NewNumber& target, const size_t depth) {
-  return depth + 1 == target.path.size();
-}
-
-// Whether the field is path[depth]. One of another type is unknown to every
-// reader.
-bool IsOnPath(const UnknownField& field, const NewNumber& target,
-              const size_t depth) {
-  return field.number() == target.path[depth] &&
-         field.type() == (IsLeaf(target, depth)
-                              ? UnknownField::TYPE_VARINT
-                              : UnknownField::TYPE_LENGTH_DELIMITED);
-}
-
-bool HasPath(const UnknownFieldSet& message, const NewNumber& target,
-             const size_t depth) {
-  for (int i = 0; i < message.field_count(); ++i) {
-    if (IsOnPath(message.field(i), target, depth)) return true;
-  }
-  return false;
-}
-
-void CopyWithNumber(const UnknownFieldSet& message, const NewNumber& target,
-                    size_t depth, UnknownFieldSet* result);
-
-// Adds a copy of a message as path[depth].
-void AddWithNumber(const UnknownFieldSet& message, const NewNumber& target,
-                   const size_t depth, UnknownFieldSet* const result) {
-  UnknownFieldSet copy;
-  CopyWithNumber(message, target, depth + 1, &copy);
-  CHECK(copy.SerializeToString(result->AddLengthDelimited(target.path[depth])));
-}
-
-void AddNumber(const NewNumber& target, const size_t depth,
-               UnknownFieldSet* const result) {
-  if (IsLeaf(target, depth)) {
-    result->AddVarint(target.path[depth], static_cast<uint64_t>(target.number));
-  } else {
-    AddWithNumber(UnknownFieldSet(), target, depth, result);
-  }
-}
-
-// Copies the bare fields of a message, in order, with the number at
-// path[depth...] set. A message within that occurs twice is one message in two
-// parts, of which the later one counts: both are set.
-void CopyWithNumber(const UnknownFieldSet& message, const NewNumber& target,
-                    const size_t depth, UnknownFieldSet* const result) {
-  // A number that is zero is absent; it belongs at the beginning.
-  if (!HasPath(message, target, depth)) AddNumber(target, depth, result);
+// Sets the number at path[depth...] of a message's bare fields, each of which
+// keeps its place. A message within that occurs twice is one message in two
+// parts, of which the later one counts: both are set. A field of another type
+// is unknown to every reader.
+void SetNumber(const std::vector<int>& path, const size_t depth,
+               const int number, UnknownFieldSet* const message) {
+  const bool is_leaf = depth + 1 == path.size();
+  const auto set = [&](UnknownField* const field) {
+    if (is_leaf) return field->set_varint(static_cast<uint64_t>(number));
+    UnknownFieldSet inner;
+    CHECK(inner.ParseFromString(field->length_delimited()));
+    SetNumber(path, depth + 1, number, &inner);
+    CHECK(inner.SerializeToString(field->mutable_length_delimited()));
+  };
   bool is_set = false;
-  for (int i = 0; i < message.field_count(); ++i) {
-    const UnknownField& field = message.field(i);
-    if (!IsOnPath(field, target, depth)) {
-      result->AddField(field);
-    } else if (!IsLeaf(target, depth)) {
-      UnknownFieldSet inner;
-      CHECK(inner.ParseFromString(field.length_delimited()));
-      AddWithNumber(inner, target, depth, result);
-    } else if (!is_set) {
-      AddNumber(target, depth, result);
-      is_set = true;
+  for (int i = 0; i < message->field_count(); ++i) {
+    UnknownField* const field = message->mutable_field(i);
+    if (field->number() != path[depth] ||
+        field->type() != (is_leaf ? UnknownField::TYPE_VARINT
+                                  : UnknownField::TYPE_LENGTH_DELIMITED)) {
+      continue;
     }
+    set(field);
+    is_set = true;
   }
+  if (is_set) return;
+  // A number that is zero is absent; it belongs at the beginning.
+  UnknownFieldSet with_number;
+  if (is_leaf) {
+    with_number.AddVarint(path[depth], 0);
+  } else {
+    with_number.AddLengthDelimited(path[depth]);
+  }
+  set(with_number.mutable_field(0));
+  with_number.MergeFrom(*message);
+  message->Swap(&with_number);
 }
 
 }  // namespace
@@ -129,11 +88,14 @@ std::string WithTrajectory(const std::string& record,
   CHECK_GE(trajectory, 0);
   UnknownFieldSet fields;
   CHECK(fields.ParseFromString(record));
-  UnknownFieldSet copy;
-  CopyWithNumber(fields, {PathToTrajectory(data.data_case()), trajectory}, 0,
-                 &copy);
+  const Kind kind = data.data_case();
+  // Submaps and nodes have it in an id of their own.
+  const std::vector<int> path = kind == Kind::kSubmap || kind == Kind::kNode
+                                    ? std::vector<int>{kind, 1, 1}
+                                    : std::vector<int>{kind, 1};
+  SetNumber(path, 0, trajectory, &fields);
   std::string result;
-  CHECK(copy.SerializeToString(&result));
+  CHECK(fields.SerializeToString(&result));
   return result;
 }
 

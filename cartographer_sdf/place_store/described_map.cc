@@ -17,53 +17,46 @@ namespace {
 // machine, little memory.
 constexpr size_t kBatchSize = 16;
 
-class BatchDescriber {
- public:
-  BatchDescriber(const PlaceOptions& place_options,
-                 const MatchOptions& match_options, const Executor& executor,
-                 std::map<SubmapId, Place>* const places)
-      : place_options_(place_options),
-        match_options_(match_options),
-        executor_(executor),
-        places_(places) {}
-
-  void Add(const SubmapId& id, const OccupancyGrid& grid) {
-    batch_.emplace_back(id, grid);
-    if (batch_.size() >= kBatchSize) Flush();
+// The map without places.
+absl::StatusOr<DescribedMap> ReadAndVisit(const std::string& path,
+                                          const SubmapCallback& on_submap,
+                                          const PointClouds wanted,
+                                          const ProgressCallback& on_progress) {
+  DescribedMap map;
+  MapVisitor visitor{on_submap, {}};
+  if (wanted == PointClouds::kKeep) {
+    visitor.on_point_cloud = [&map](const NodeId& id, PointCloud2 cloud) {
+      map.point_clouds.emplace(id, std::move(cloud));
+    };
   }
-
-  void Flush() {
-    std::vector<std::optional<Place>> described(batch_.size());
-    executor_(batch_.size(), [&](const size_t k) {
-      described[k] =
-          DescribePlace(place_options_, batch_[k].first, batch_[k].second);
-      if (described[k] && match_options_.method == Method::kSdf) {
-        FindSelfSimilarities(match_options_, &*described[k]);
-      }
-    });
-    for (std::optional<Place>& place : described) {
-      if (place) places_->emplace(place->id, *std::move(place));
-    }
-    batch_.clear();
-  }
-
- private:
-  const PlaceOptions& place_options_;
-  const MatchOptions& match_options_;
-  const Executor& executor_;
-  std::map<SubmapId, Place>* const places_;
-  std::vector<std::pair<SubmapId, OccupancyGrid>> batch_;
-};
-
-PointCloudCallback Collector(const PointClouds wanted,
-                             std::map<NodeId, PointCloud2>* const clouds) {
-  if (wanted == PointClouds::kDrop) return {};
-  return [clouds](const NodeId& id, PointCloud2 cloud) {
-    clouds->emplace(id, std::move(cloud));
-  };
+  absl::StatusOr<MapState> state = ReadMap(path, visitor, on_progress);
+  if (!state.ok()) return state.status();
+  map.state = *std::move(state);
+  map.odometry = OdometryPoses(map.state);
+  return map;
 }
 
 }  // namespace
+
+std::map<SubmapId, Place> DescribePlaces(
+    const PlaceOptions& place_options, const MatchOptions& match_options,
+    const std::map<SubmapId, OccupancyGrid>& grids, const Executor& executor) {
+  std::vector<const std::pair<const SubmapId, OccupancyGrid>*> entries;
+  for (const auto& entry : grids) entries.push_back(&entry);
+  std::vector<std::optional<Place>> described(entries.size());
+  executor(entries.size(), [&](const size_t k) {
+    described[k] =
+        DescribePlace(place_options, entries[k]->first, entries[k]->second);
+    if (described[k] && match_options.method == Method::kSdf) {
+      FindSelfSimilarities(match_options, &*described[k]);
+    }
+  });
+  std::map<SubmapId, Place> places;
+  for (std::optional<Place>& place : described) {
+    if (place) places.emplace(place->id, *std::move(place));
+  }
+  return places;
+}
 
 absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
                                          const MatchOptions& match_options,
@@ -71,18 +64,22 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
                                          const Executor& executor,
                                          const ProgressCallback& on_progress,
                                          const PointClouds point_clouds) {
-  DescribedMap map;
-  BatchDescriber describer(place_options, match_options, executor, &map.places);
-  absl::StatusOr<MapState> state = ReadMap(
-      path,
-      {[&describer](const SubmapId& id, const SubmapSummary&,
-                    const OccupancyGrid& grid) { describer.Add(id, grid); },
-       Collector(point_clouds, &map.point_clouds)},
-      on_progress);
-  if (!state.ok()) return state.status();
-  describer.Flush();
-  map.state = *std::move(state);
-  map.odometry = OdometryPoses(map.state);
+  std::map<SubmapId, Place> places;
+  std::map<SubmapId, OccupancyGrid> batch;
+  const auto describe_batch = [&] {
+    places.merge(DescribePlaces(place_options, match_options, batch, executor));
+    batch.clear();
+  };
+  const auto add = [&](const SubmapId& id, const SubmapSummary&,
+                       const OccupancyGrid& grid) {
+    batch.emplace(id, grid);
+    if (batch.size() >= kBatchSize) describe_batch();
+  };
+  absl::StatusOr<DescribedMap> map =
+      ReadAndVisit(path, add, point_clouds, on_progress);
+  if (!map.ok()) return map;
+  describe_batch();
+  map->places = std::move(places);
   return map;
 }
 
@@ -93,27 +90,21 @@ absl::StatusOr<RememberedMap> RememberMap(
     const ProgressCallback& on_progress, const PointClouds point_clouds) {
   const absl::StatusOr<PlaceFileKey> key = MakePlaceFileKey(path, options_text);
   if (!key.ok()) return key.status();
-  RememberedMap remembered;
   absl::StatusOr<std::map<SubmapId, Place>> places =
       ReadPlaces(places_path, *key);
+  absl::StatusOr<DescribedMap> map =
+      places.ok() ? ReadAndVisit(path, {}, point_clouds, on_progress)
+                  : DescribeMap(place_options, match_options, path, executor,
+                                on_progress, point_clouds);
+  if (!map.ok()) return map.status();
+  RememberedMap remembered{*std::move(map), places.ok(), ""};
   if (places.ok()) {
-    DescribedMap& map = remembered.map;
-    absl::StatusOr<MapState> state = ReadMap(
-        path, {{}, Collector(point_clouds, &map.point_clouds)}, on_progress);
-    if (!state.ok()) return state.status();
-    map.state = *std::move(state);
-    map.odometry = OdometryPoses(map.state);
-    map.places = *std::move(places);
-    remembered.is_from_file = true;
+    remembered.map.places = *std::move(places);
     return remembered;
   }
   if (!absl::IsNotFound(places.status())) {
     remembered.complaint = std::string(places.status().message());
   }
-  absl::StatusOr<DescribedMap> map = DescribeMap(
-      place_options, match_options, path, executor, on_progress, point_clouds);
-  if (!map.ok()) return map.status();
-  remembered.map = *std::move(map);
   const absl::Status status =
       WritePlaces(places_path, *key, remembered.map.places);
   if (!status.ok()) remembered.complaint = std::string(status.message());
@@ -152,15 +143,9 @@ std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
   return poses;
 }
 
-absl::StatusOr<MapWithScans> ReadMapWithScans(
+absl::StatusOr<DescribedMap> ReadMapWithScans(
     const std::string& path, const ProgressCallback& on_progress) {
-  MapWithScans map;
-  absl::StatusOr<MapState> state =
-      ReadMap(path, {{}, Collector(PointClouds::kKeep, &map.point_clouds)},
-              on_progress);
-  if (!state.ok()) return state.status();
-  map.state = *std::move(state);
-  return map;
+  return ReadAndVisit(path, {}, PointClouds::kKeep, on_progress);
 }
 
 }  // namespace cartographer_sdf

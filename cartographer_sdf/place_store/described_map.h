@@ -8,16 +8,13 @@
 #define CARTOGRAPHER_SDF_PLACE_STORE_DESCRIBED_MAP_H_
 
 #include <map>
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/progress.h"
 #include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
@@ -43,6 +40,11 @@ struct DescribedMap {
 [[nodiscard]] std::map<SubmapId, OdometryPose> OdometryPoses(
     const MapState& state);
 
+// Of those grids that show a wall.
+[[nodiscard]] std::map<SubmapId, Place> DescribePlaces(
+    const PlaceOptions& place_options, const MatchOptions& match_options,
+    const std::map<SubmapId, OccupancyGrid>& grids, const Executor& executor);
+
 enum class PointClouds { kDrop, kKeep };
 
 // Reads the file once; fails as ReadMap does. Holds a few grids at a time.
@@ -52,12 +54,8 @@ enum class PointClouds { kDrop, kKeep };
     const ProgressCallback& on_progress = {},
     PointClouds point_clouds = PointClouds::kDrop);
 
-// A map with its nodes' filtered range data, without places.
-struct MapWithScans {
-  MapState state;
-  std::map<NodeId, PointCloud2> point_clouds;
-};
-[[nodiscard]] absl::StatusOr<MapWithScans> ReadMapWithScans(
+// The map with its point clouds, without places.
+[[nodiscard]] absl::StatusOr<DescribedMap> ReadMapWithScans(
     const std::string& path, const ProgressCallback& on_progress = {});
 
 struct RememberedMap {

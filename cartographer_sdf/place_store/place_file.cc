@@ -4,6 +4,7 @@
 #include "cartographer_sdf/place_store/place_file.h"
 
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -13,7 +14,6 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/place_index.pb.h"
-#include "cartographer_sdf/place_store/place_codec.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -22,17 +22,6 @@ constexpr char kKind[] = "cartographer_sdf places";
 // To be raised with every change of the format *or of what describing a submap
 // yields*.
 constexpr int kVersion = 1;
-
-std::string ToRecord(const PlaceFileKey& key, const size_t num_places) {
-  proto::place_index::Header header;
-  header.set_kind(kKind);
-  header.set_version(kVersion);
-  header.set_map_hash(key.map_hash);
-  header.set_map_size(key.map_size);
-  header.set_options(key.options);
-  header.set_num_places(static_cast<int>(num_places));
-  return header.SerializeAsString();
-}
 
 absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
                          const proto::place_index::Header& header) {
@@ -51,18 +40,6 @@ absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
     return refuse("has places that were described with other options");
   }
   return absl::OkStatus();
-}
-
-absl::StatusOr<proto::place_index::Header> ReadHeader(
-    RecordReader* const reader) {
-  std::string record;
-  const absl::StatusOr<bool> has_record = reader->Read(&record);
-  if (!has_record.ok()) return has_record.status();
-  proto::place_index::Header header;
-  if (!*has_record || !header.ParseFromString(record)) {
-    return reader->Corrupted("is no header of a file of places");
-  }
-  return header;
 }
 
 // All places after the header.
@@ -89,6 +66,220 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadRecords(
       return reader->Corrupted("has a place that was there before");
     }
   }
+}
+
+using ProtoPlace = proto::place_index::Place;
+
+constexpr int kBytesPerCell = 4;
+constexpr int kNumbersPerFeature = 5;
+// Along either axis; 1.6 km at 5 cm.
+constexpr int kMaxNumCells = 1 << 15;
+// Larger coordinates are no submap's [m].
+constexpr double kMaxStoredCoordinate = 1e5;
+
+bool IsCoordinate(const double value) {
+  return std::abs(value) <= kMaxStoredCoordinate;  // false for NaN
+}
+
+proto::place_index::Pose ToProto(const Rigid2& pose) {
+  proto::place_index::Pose proto;
+  proto.set_x(pose.translation().x());
+  proto.set_y(pose.translation().y());
+  proto.set_rotation(pose.rotation());
+  return proto;
+}
+
+bool FromProto(const proto::place_index::Pose& proto, Rigid2* const pose) {
+  if (!IsCoordinate(proto.x()) || !IsCoordinate(proto.y()) ||
+      !(std::abs(proto.rotation()) <= M_PI)) {
+    return false;
+  }
+  *pose = Rigid2(proto.x(), proto.y(), proto.rotation());
+  return true;
+}
+
+// What the distances of the cells before, along x and along y, let expect of
+// cell k: that the field is a plane.
+uint16_t ExpectedDistance(const SurfaceCell* const cells, const size_t width,
+                          const size_t k) {
+  const auto at = [cells](const size_t index) {
+    return static_cast<int>(cells[index].distance);
+  };
+  const bool has_left = k % width > 0, has_below = k >= width;
+  const int left = has_left ? at(k - 1) : 0;
+  const int below = has_below ? at(k - width) : 0;
+  const int both = has_left && has_below ? at(k - width - 1) : 0;
+  return static_cast<uint16_t>(left + below - both);
+}
+
+// Small numbers of either sign become small numbers.
+uint16_t ZigZag(const uint16_t value) {
+  return static_cast<uint16_t>(value << 1 ^ (value & 0x8000 ? 0xffff : 0));
+}
+uint16_t UnZigZag(const uint16_t value) {
+  return static_cast<uint16_t>(value >> 1 ^ (value & 1 ? 0xffff : 0));
+}
+
+void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
+  // Fails to compile where a member is new, and would be lost.
+  const auto& [geometry, cells, walls, observed_points, area, poses] = surface;
+  static_assert(sizeof(SurfaceCell) == kBytesPerCell);
+  proto->set_num_cells_x(geometry.size.x());
+  proto->set_num_cells_y(geometry.size.y());
+  proto->set_resolution(geometry.resolution);
+  *proto->mutable_t_submap_grid() = ToProto(geometry.T_submap_grid);
+  const size_t n = static_cast<size_t>(cells.size());
+  std::string& bytes = *proto->mutable_cells();
+  bytes.resize(kBytesPerCell * n);
+  for (size_t k = 0; k < n; ++k) {
+    const SurfaceCell& cell = cells.data()[k];
+    const uint16_t difference = ZigZag(static_cast<uint16_t>(
+        cell.distance -
+        ExpectedDistance(cells.data(), static_cast<size_t>(cells.rows()), k)));
+    bytes[k] = static_cast<char>(difference & 0xff);
+    bytes[n + k] = static_cast<char>(difference >> 8);
+    bytes[2 * n + k] = static_cast<char>(cell.free);
+    bytes[3 * n + k] = static_cast<char>(cell.observed);
+  }
+  for (const SurfacePoint& wall : walls) {
+    proto->add_walls(wall.position.x());
+    proto->add_walls(wall.position.y());
+    proto->add_walls(wall.weight);
+  }
+  for (const Eigen::Vector2d& point : observed_points) {
+    proto->add_observed_points(point.x());
+    proto->add_observed_points(point.y());
+  }
+  proto->set_area_per_observed_point(area);
+  for (const Rigid2& pose : poses) {
+    *proto->add_self_similar_poses() = ToProto(pose);
+  }
+}
+
+void EncodeFeatures(const FeatureSet& set, ProtoPlace* const proto) {
+  for (const Feature& feature : set.features) {
+    const auto& [keypoint, orientation] = feature;
+    const auto& [position, clearance, kind, strength] = keypoint;
+    for (const double number :
+         {position.x(), position.y(), clearance, strength, orientation}) {
+      proto->add_features(number);
+    }
+    proto->mutable_kinds()->push_back(static_cast<char>(kind));
+  }
+  proto->mutable_descriptors()->Add(
+      set.descriptors.data(), set.descriptors.data() + set.descriptors.size());
+}
+
+// Each returns what is wrong, or nothing.
+std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
+  const int width = proto.num_cells_x(), height = proto.num_cells_y();
+  if (width < 1 || height < 1 || width > kMaxNumCells ||
+      height > kMaxNumCells) {
+    return "has a grid of an impossible size";
+  }
+  const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
+  const std::string& bytes = proto.cells();
+  if (bytes.size() != kBytesPerCell * n) {
+    return "has a grid whose cells do not match its size";
+  }
+  CellGeometry& geometry = surface->geometry;
+  geometry.size = {width, height};
+  geometry.resolution = proto.resolution();
+  if (!(geometry.resolution >= 1e-4 && geometry.resolution <= 100.)) {
+    return "has a grid of an impossible resolution";
+  }
+  if (!FromProto(proto.t_submap_grid(), &geometry.T_submap_grid)) {
+    return "has a grid at an impossible pose";
+  }
+  surface->cells.resize(width, height);
+  for (size_t k = 0; k < n; ++k) {
+    const auto byte = [&](const size_t plane) {
+      return static_cast<uint8_t>(bytes[plane * n + k]);
+    };
+    if (byte(3) > 1) return "has a cell that is neither observed nor not";
+    const uint16_t difference =
+        UnZigZag(static_cast<uint16_t>(byte(0) | byte(1) << 8));
+    const uint16_t distance = static_cast<uint16_t>(
+        ExpectedDistance(surface->cells.data(), static_cast<size_t>(width), k) +
+        difference);
+    surface->cells.data()[k] = {static_cast<int16_t>(distance), byte(2),
+                                byte(3) == 1};
+  }
+  return "";
+}
+
+std::string DecodePoints(const ProtoPlace& proto, SurfaceModel* const surface) {
+  if (proto.walls().empty() || proto.walls_size() % 3 != 0) {
+    return "has no walls, or a part of one";
+  }
+  for (int k = 0; k < proto.walls_size(); k += 3) {
+    const double x = proto.walls(k), y = proto.walls(k + 1);
+    const double weight = proto.walls(k + 2);
+    if (!IsCoordinate(x) || !IsCoordinate(y) ||
+        !(weight > 0. && weight <= 1.)) {
+      return "has an impossible wall";
+    }
+    surface->walls.push_back({{x, y}, weight});
+  }
+  if (proto.observed_points().empty() || proto.observed_points_size() % 2) {
+    return "has no observed points, or a part of one";
+  }
+  for (int k = 0; k < proto.observed_points_size(); k += 2) {
+    const double x = proto.observed_points(k);
+    const double y = proto.observed_points(k + 1);
+    if (!IsCoordinate(x) || !IsCoordinate(y)) {
+      return "has an impossible observed point";
+    }
+    surface->observed_points.emplace_back(x, y);
+  }
+  surface->area_per_observed_point = proto.area_per_observed_point();
+  if (!(surface->area_per_observed_point > 0. &&
+        surface->area_per_observed_point <= 1e6)) {
+    return "has observed points of an impossible area";
+  }
+  for (const proto::place_index::Pose& pose : proto.self_similar_poses()) {
+    surface->self_similar_poses.emplace_back();
+    if (!FromProto(pose, &surface->self_similar_poses.back())) {
+      return "has an impossible self-similar pose";
+    }
+  }
+  return "";
+}
+
+std::string DecodeFeatures(const ProtoPlace& proto, FeatureSet* const set) {
+  const int count = static_cast<int>(proto.kinds().size());
+  if (proto.features_size() % kNumbersPerFeature != 0 ||
+      proto.features_size() / kNumbersPerFeature != count) {
+    return "has features whose numbers do not match";
+  }
+  if (count == 0 ? proto.descriptors_size() != 0
+                 : proto.descriptors_size() == 0 ||
+                       proto.descriptors_size() % count != 0) {
+    return "has descriptors that do not match the features";
+  }
+  for (int k = 0; k < count; ++k) {
+    const double* const numbers =
+        proto.features().data() + kNumbersPerFeature * k;
+    const int kind = static_cast<uint8_t>(proto.kinds()[k]);
+    if (kind >= kNumKeypointKinds || !IsCoordinate(numbers[0]) ||
+        !IsCoordinate(numbers[1]) || !IsCoordinate(numbers[2]) ||
+        !std::isfinite(numbers[3]) || !(std::abs(numbers[4]) <= 2. * M_PI)) {
+      return "has an impossible feature";
+    }
+    set->features.push_back({{{numbers[0], numbers[1]},
+                              numbers[2],
+                              static_cast<KeypointKind>(kind),
+                              numbers[3]},
+                             numbers[4]});
+  }
+  if (count == 0) return "";
+  set->descriptors = Eigen::Map<const Eigen::MatrixXf>(
+      proto.descriptors().data(), proto.descriptors_size() / count, count);
+  // Also keeps squares within range.
+  if (!(set->descriptors.array().abs() <= 1e15f).all()) {
+    return "has an impossible descriptor";
+  }
+  return "";
 }
 
 }  // namespace
@@ -120,7 +311,14 @@ absl::Status WritePlaces(const std::string& path, const PlaceFileKey& key,
                          const std::map<SubmapId, Place>& places) {
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(path);
   if (!writer.ok()) return writer.status();
-  absl::Status status = writer->Write(ToRecord(key, places.size()));
+  proto::place_index::Header header;
+  header.set_kind(kKind);
+  header.set_version(kVersion);
+  header.set_map_hash(key.map_hash);
+  header.set_map_size(key.map_size);
+  header.set_options(key.options);
+  header.set_num_places(static_cast<int>(places.size()));
+  absl::Status status = writer->Write(header.SerializeAsString());
   for (const auto& [id, place] : places) {
     if (status.ok()) status = writer->Write(EncodePlace(place));
   }
@@ -135,20 +333,50 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadPlaces(const std::string& path,
   }
   absl::StatusOr<RecordReader> reader = RecordReader::Open(path);
   if (!reader.ok()) return reader.status();
-  const absl::StatusOr<proto::place_index::Header> header =
-      ReadHeader(&*reader);
-  if (!header.ok()) return header.status();
-  if (absl::Status status = CheckHeader(path, key, *header); !status.ok()) {
-    return status;
+  std::string record;
+  const absl::StatusOr<bool> has_record = reader->Read(&record);
+  if (!has_record.ok()) return has_record.status();
+  proto::place_index::Header header;
+  if (!*has_record || !header.ParseFromString(record)) {
+    return reader->Corrupted("is no header of a file of places");
   }
+  const absl::Status status = CheckHeader(path, key, header);
+  if (!status.ok()) return status;
   absl::StatusOr<std::map<SubmapId, Place>> places = ReadRecords(&*reader);
   if (!places.ok()) return places.status();
-  if (static_cast<int64_t>(places->size()) != header->num_places()) {
+  if (static_cast<int64_t>(places->size()) != header.num_places()) {
     return absl::DataLossError(absl::StrCat(path, " is corrupted: it has ",
                                             places->size(), " places of ",
-                                            header->num_places()));
+                                            header.num_places()));
   }
   return places;
+}
+
+std::string EncodePlace(const Place& place) {
+  const auto& [id, surface, features] = place;
+  ProtoPlace proto;
+  proto.set_trajectory(id.trajectory);
+  proto.set_index(id.index);
+  EncodeSurface(surface, &proto);
+  EncodeFeatures(features, &proto);
+  return proto.SerializeAsString();
+}
+
+absl::StatusOr<Place> DecodePlace(const std::string& bytes) {
+  ProtoPlace proto;
+  if (!proto.ParseFromString(bytes)) {
+    return absl::DataLossError("is no place");
+  }
+  if (proto.trajectory() < 0 || proto.index() < 0) {
+    return absl::DataLossError("has a place with a negative number");
+  }
+  Place place;
+  place.id = {proto.trajectory(), proto.index()};
+  std::string problem = DecodeCells(proto, &place.surface);
+  if (problem.empty()) problem = DecodePoints(proto, &place.surface);
+  if (problem.empty()) problem = DecodeFeatures(proto, &place.features);
+  if (!problem.empty()) return absl::DataLossError(problem);
+  return place;
 }
 
 }  // namespace cartographer_sdf

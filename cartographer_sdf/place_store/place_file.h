@@ -42,6 +42,14 @@ struct PlaceFileKey {
 [[nodiscard]] absl::StatusOr<std::map<SubmapId, Place>> ReadPlaces(
     const std::string& path, const PlaceFileKey& key);
 
+// A record of such a file: a serialized proto::place_index::Place.
+[[nodiscard]] std::string EncodePlace(const Place& place);
+
+// Exactly what was encoded. Any bytes give a place that the rest of the program
+// can work with (sizes that fit, finite numbers, ...) or an error, a predicate
+// ("has no walls") for callers to put a subject before.
+[[nodiscard]] absl::StatusOr<Place> DecodePlace(const std::string& bytes);
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_PLACE_STORE_PLACE_FILE_H_

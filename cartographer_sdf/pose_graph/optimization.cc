@@ -3,17 +3,15 @@
 
 #include "cartographer_sdf/pose_graph/optimization.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "cartographer_sdf/pose_graph/rotation_first.h"
 #include "cartographer_sdf/pose_graph/spa_graph.h"
 #include "cartographer_sdf/pose_graph/sparse_solver.h"
-#include "ceres/ceres.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -47,48 +45,24 @@ class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
   const SpaEdge edge_;
 };
 
-SparseSolution Solve(const OptimizationOptions& options,
-                     SpaGraph* const graph) {
-  ceres::HuberLoss huber_loss(options.huber_scale);
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
-  for (size_t i = 0; i != graph->poses.size(); ++i) {
-    problem.AddParameterBlock(graph->poses[i].data(), 3);
-    if (graph->constant[i]) {
-      problem.SetParameterBlockConstant(graph->poses[i].data());
-    }
-  }
-  for (const SpaEdge& edge : graph->edges) {
-    problem.AddResidualBlock(
-        new SpaCostFunction(edge), edge.robust ? &huber_loss : nullptr,
-        graph->poses[edge.start].data(), graph->poses[edge.end].data());
-  }
-  return SolveSparse(options.max_num_iterations, kFunctionTolerance, &problem);
-}
-
 // Moves each landmark rigidly with the node that was nearest to it in the
 // plane; of equally near ones the first.
 void MoveLandmarks(const std::map<NodeId, Node>& old_nodes,
                    PoseGraph* const pose_graph) {
   for (auto& [id, T_map_landmark] : pose_graph->landmark_poses) {
-    const std::pair<const NodeId, Node>* nearest = nullptr;
-    double nearest_distance = std::numeric_limits<double>::infinity();
-    for (const auto& id_and_node : old_nodes) {
-      const double distance = (id_and_node.second.T_map_node.translation() -
-                               T_map_landmark.translation.head<2>())
-                                  .norm();
-      if (distance < nearest_distance) {
-        nearest = &id_and_node;
-        nearest_distance = distance;
-      }
-    }
-    if (nearest != nullptr) {
-      const Rigid2 T_map_old_map =
-          pose_graph->nodes.at(nearest->first).T_map_node *
-          nearest->second.T_map_node.Inverse();
-      T_map_landmark = Embed3D(T_map_old_map) * T_map_landmark;
-    }
+    const Eigen::Vector2d p_map = T_map_landmark.translation.head<2>();
+    const auto distance = [&p_map](const auto& id_and_node) {
+      return (id_and_node.second.T_map_node.translation() - p_map).norm();
+    };
+    const auto nearest = std::min_element(old_nodes.begin(), old_nodes.end(),
+                                          [&](const auto& a, const auto& b) {
+                                            return distance(a) < distance(b);
+                                          });
+    if (nearest == old_nodes.end()) continue;
+    const Rigid2 T_map_old_map =
+        pose_graph->nodes.at(nearest->first).T_map_node *
+        nearest->second.T_map_node.Inverse();
+    T_map_landmark = Embed3D(T_map_old_map) * T_map_landmark;
   }
 }
 
@@ -109,6 +83,31 @@ void SetPoses(const SpaGraph& graph, PoseGraph* const pose_graph) {
   }
   MoveLandmarks(old_nodes, pose_graph);
 }
+
+constexpr int kMinNumSteps = 20;
+// Odometry that on average differs less from local SLAM is uninformative [m],
+// [rad].
+constexpr double kMinTranslationDifference = 1e-5;
+constexpr double kMinRotationDifference = 1e-6;
+// Weights that differ more than this act as if the lesser were zero.
+constexpr double kMinLambda = 1e-6;
+
+// Least squares of y = lambda * x.
+struct Regression {
+  double xy = 0.;
+  double xx = 0.;
+
+  void Add(const double x, const double y) {
+    xy += x * y;
+    xx += x * x;
+  }
+  // The weight beside one of `other` that explains the slope.
+  [[nodiscard]] double Weight(const double other) const {
+    const double lambda = std::min(xy / xx, 1. - kMinLambda);
+    if (lambda < kMinLambda) return 0.;
+    return other * std::sqrt(lambda / (1. - lambda));
+  }
+};
 
 }  // namespace
 
@@ -156,13 +155,18 @@ OptimizationSummary Optimize(const OptimizationOptions& options,
       std::swap(graph.poses, *poses);
     }
   }
-  const SparseSolution solution = Solve(options, &graph);
-  if (solution.usable) {
+  const ceres::Solver::Summary solution = SolveSparse(
+      SparseSolverOptions(options.max_num_iterations, kFunctionTolerance),
+      graph, options.huber_scale,
+      [](const SpaEdge& edge) { return new SpaCostFunction(edge); },
+      &graph.poses);
+  if (solution.IsSolutionUsable()) {
     SetPoses(graph, pose_graph);
     summary.final_cost = SpaCost(graph, options.huber_scale);
   }
-  summary.num_iterations = solution.num_iterations;
-  summary.converged = solution.converged;
+  summary.num_iterations =
+      solution.num_successful_steps + solution.num_unsuccessful_steps;
+  summary.converged = solution.termination_type == ceres::CONVERGENCE;
   summary.message = solution.message;
   summary.seconds = std::chrono::duration<double>(
                         std::chrono::steady_clock::now() - start_time)
@@ -183,6 +187,45 @@ ConstraintError ConstraintResidual(const PoseGraph& pose_graph,
           .norm(),
       std::abs(NormalizeAngle(T_submap_node.rotation() -
                               constraint.T_submap_node.rotation()))};
+}
+
+std::optional<OdometryWeights> InferOdometryWeights(
+    const OptimizationOptions& options, const PoseGraph& pose_graph) {
+  if (!(options.local_slam_pose_translation_weight > 0. &&
+        options.local_slam_pose_rotation_weight > 0.)) {
+    return std::nullopt;
+  }
+  Regression translation, rotation;
+  int num_steps = 0;
+  auto previous = pose_graph.nodes.begin();
+  for (auto it = pose_graph.nodes.begin(); it != pose_graph.nodes.end();
+       previous = it++) {
+    const auto& [from_id, from] = *previous;
+    const auto& [id, to] = *it;
+    if (from_id.trajectory != id.trajectory || id.index != from_id.index + 1 ||
+        !from.T_local_node || !to.T_local_node ||
+        !to.T_previous_node_by_odometry) {
+      continue;
+    }
+    const Rigid2 optimized = from.T_map_node.Inverse() * to.T_map_node;
+    const Rigid2 local = from.T_local_node->Inverse() * *to.T_local_node;
+    const Rigid2& odometry = *to.T_previous_node_by_odometry;
+    const Eigen::Vector2d x = odometry.translation() - local.translation();
+    const Eigen::Vector2d y = optimized.translation() - local.translation();
+    translation.Add(x.x(), y.x());
+    translation.Add(x.y(), y.y());
+    rotation.Add(NormalizeAngle(odometry.rotation() - local.rotation()),
+                 NormalizeAngle(optimized.rotation() - local.rotation()));
+    ++num_steps;
+  }
+  if (num_steps < kMinNumSteps ||
+      translation.xx < num_steps * std::pow(kMinTranslationDifference, 2) ||
+      rotation.xx < num_steps * std::pow(kMinRotationDifference, 2)) {
+    return std::nullopt;
+  }
+  return OdometryWeights{
+      translation.Weight(options.local_slam_pose_translation_weight),
+      rotation.Weight(options.local_slam_pose_rotation_weight)};
 }
 
 }  // namespace cartographer_sdf

@@ -41,6 +41,9 @@ struct NodeId {
   }
 };
 
+// Points of a node's range data in its frame [m].
+using PointCloud2 = std::vector<Eigen::Vector2f>;
+
 struct Node {
   // Universal time: 100 ns ticks since 0001-01-01, as in the file.
   int64_t time = 0;

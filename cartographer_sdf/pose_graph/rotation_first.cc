@@ -7,7 +7,6 @@
 #include <cstddef>
 
 #include "cartographer_sdf/pose_graph/sparse_solver.h"
-#include "ceres/ceres.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -46,50 +45,30 @@ class LinearCost : public ceres::SizedCostFunction<2, 2, 2> {
   const Eigen::Vector2d measured_;
 };
 
-// Minimises the edges' residuals, of robust ones under the Huber loss; false
-// where the solver fails. `make_cost` takes an edge to a new LinearCost.
-template <typename MakeCost>
-bool SolveLinear(const SpaGraph& graph, const double huber_scale,
-                 const MakeCost& make_cost,
-                 std::vector<Eigen::Vector2d>* const unknowns) {
-  ceres::HuberLoss huber_loss(huber_scale);
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
-  for (size_t i = 0; i != unknowns->size(); ++i) {
-    problem.AddParameterBlock((*unknowns)[i].data(), 2);
-    if (graph.constant[i]) {
-      problem.SetParameterBlockConstant((*unknowns)[i].data());
-    }
-  }
-  for (const SpaEdge& edge : graph.edges) {
-    problem.AddResidualBlock(
-        make_cost(edge), edge.robust ? &huber_loss : nullptr,
-        (*unknowns)[edge.start].data(), (*unknowns)[edge.end].data());
-  }
-  return SolveSparse(kMaxNumIterations, kRotationTolerance, &problem).usable;
-}
-
 }  // namespace
 
 std::optional<std::vector<Eigen::Vector3d>> RotationFirstPoses(
     const SpaGraph& graph, const double huber_scale) {
   std::vector<Eigen::Vector3d> poses = graph.poses;
-  std::vector<Eigen::Vector2d> directions;
-  std::vector<Eigen::Vector2d> translations;
+  std::vector<Eigen::Vector2d> directions, translations;
   for (const Eigen::Vector3d& pose : poses) {
     directions.emplace_back(std::cos(pose.z()), std::sin(pose.z()));
     translations.push_back(pose.head<2>());
   }
+  const auto solve = [&](const auto& make_cost,
+                         std::vector<Eigen::Vector2d>* const vectors) {
+    return SolveSparse(
+               SparseSolverOptions(kMaxNumIterations, kRotationTolerance),
+               graph, huber_scale, make_cost, vectors)
+        .IsSolutionUsable();
+  };
   const auto direction_cost = [](const SpaEdge& edge) {
     const double w_r = edge.rotation_weight;
     return new LinearCost(w_r * edge.T_start_end.RotationMatrix(),
                           w_r * Eigen::Matrix2d::Identity(),
                           Eigen::Vector2d::Zero());
   };
-  if (!SolveLinear(graph, huber_scale, direction_cost, &directions)) {
-    return std::nullopt;
-  }
+  if (!solve(direction_cost, &directions)) return std::nullopt;
   for (size_t i = 0; i != poses.size(); ++i) {
     if (!graph.constant[i]) {
       poses[i].z() = std::atan2(directions[i].y(), directions[i].x());
@@ -102,9 +81,7 @@ std::optional<std::vector<Eigen::Vector3d>> RotationFirstPoses(
     return new LinearCost(w_t * R_start_map, w_t * R_start_map,
                           w_t * edge.T_start_end.translation());
   };
-  if (!SolveLinear(graph, huber_scale, translation_cost, &translations)) {
-    return std::nullopt;
-  }
+  if (!solve(translation_cost, &translations)) return std::nullopt;
   for (size_t i = 0; i != poses.size(); ++i) {
     poses[i].head<2>() = translations[i];
   }

@@ -128,51 +128,37 @@ class LineReader {
   int number_ = 0;
 };
 
-absl::Status ParseNumber(const LineReader& reader,
-                         const absl::string_view field, double* const value) {
-  if (!absl::SimpleAtod(field, value) || !std::isfinite(*value)) {
-    return reader.Error(absl::StrCat("field of ", field.size(),
-                                     " characters is no finite number"));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status ParseRanges(const LineReader& reader,
-                         const std::vector<absl::string_view>& fields,
-                         std::vector<double>* const ranges) {
-  ranges->reserve(fields.size());
-  for (const absl::string_view field : fields) {
-    double range = 0.;
-    if (absl::Status status = ParseNumber(reader, field, &range);
-        !status.ok()) {
-      return status;
+absl::StatusOr<std::vector<double>> ParseNumbers(
+    const LineReader& reader, const absl::string_view* const fields,
+    const int count) {
+  std::vector<double> numbers(static_cast<size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    if (!absl::SimpleAtod(fields[k], &numbers[k]) ||
+        !std::isfinite(numbers[k])) {
+      return reader.Error(absl::StrCat("field of ", fields[k].size(),
+                                       " characters is no finite number"));
     }
-    if (range < 0.) return reader.Error("a range is negative");
-    // More is no return either.
-    ranges->push_back(std::min(range, kMaxLogCoordinate));
   }
-  return absl::OkStatus();
+  return numbers;
 }
 
-// Of odometry's pose and the time.
+// Its pose and the time.
 absl::Status ParseOdometry(const LineReader& reader,
-                           const std::vector<absl::string_view>& fields,
+                           const absl::string_view* const fields,
                            LaserScan* const scan) {
-  std::array<double, kNumOdometryFields> numbers;
-  for (int k = 0; k < kNumOdometryFields; ++k) {
-    if (absl::Status status = ParseNumber(reader, fields[k], &numbers[k]);
-        !status.ok()) {
-      return status;
-    }
-  }
-  const auto& [x, y, theta, time] = numbers;
+  const absl::StatusOr<std::vector<double>> numbers =
+      ParseNumbers(reader, fields, kNumOdometryFields);
+  if (!numbers.ok()) return numbers.status();
+  const double x = (*numbers)[0], y = (*numbers)[1], theta = (*numbers)[2];
   if (std::max({std::abs(x), std::abs(y), std::abs(theta)}) >
       kMaxLogCoordinate) {
     return reader.Error("the odometry is off this world");
   }
-  if (time < 0. || time > kMaxTime) return reader.Error("the time is no time");
   scan->T_odometry_robot = Rigid2(x, y, theta);
-  scan->time = time;
+  scan->time = (*numbers)[3];
+  if (scan->time < 0. || scan->time > kMaxTime) {
+    return reader.Error("the time is no time");
+  }
   return absl::OkStatus();
 }
 
@@ -193,18 +179,19 @@ absl::StatusOr<LaserScan> ParseScan(const LineReader& reader,
                                      " beams"));
   }
   LaserScan scan;
-  const auto pose_begin = fields.begin() + 2 + num_beams;
-  if (absl::Status status =
-          ParseRanges(reader, {fields.begin() + 2, pose_begin}, &scan.ranges);
-      !status.ok()) {
-    return status;
+  absl::StatusOr<std::vector<double>> ranges =
+      ParseNumbers(reader, &fields[2], num_beams);
+  if (!ranges.ok()) return ranges.status();
+  scan.ranges = *std::move(ranges);
+  for (double& range : scan.ranges) {
+    if (range < 0.) return reader.Error("a range is negative");
+    // More is no return either.
+    range = std::min(range, kMaxLogCoordinate);
   }
   // The laser's pose comes before odometry's.
-  if (absl::Status status = ParseOdometry(
-          reader, {pose_begin + 3, pose_begin + 3 + kNumOdometryFields}, &scan);
-      !status.ok()) {
-    return status;
-  }
+  const absl::Status status =
+      ParseOdometry(reader, &fields[2 + num_beams + 3], &scan);
+  if (!status.ok()) return status;
   return scan;
 }
 
@@ -293,10 +280,8 @@ absl::StatusOr<std::vector<LaserScan>> ReadScans(const std::string& path) {
     if (!IsScan(line)) continue;
     absl::StatusOr<LaserScan> scan = ParseScan(*reader, line);
     if (!scan.ok()) return scan.status();
-    if (absl::Status status = CheckAgainstLast(*reader, scans, *scan);
-        !status.ok()) {
-      return status;
-    }
+    const absl::Status status = CheckAgainstLast(*reader, scans, *scan);
+    if (!status.ok()) return status;
     scans.push_back(*std::move(scan));
   }
 }
@@ -315,12 +300,6 @@ std::string Validate(const CarmenLogOptions& options) {
   return "";
 }
 
-double UsualFieldOfView(const int num_beams) {
-  const bool is_half_turn =
-      num_beams == 180 || num_beams == 181 || num_beams == 360;
-  return is_half_turn ? M_PI : 1.5 * M_PI;
-}
-
 absl::StatusOr<Recording> ReadCarmenLog(const std::string& path,
                                         const CarmenLogOptions& options) {
   if (const std::string problem = Validate(options); !problem.empty()) {
@@ -337,8 +316,10 @@ absl::StatusOr<Recording> ReadCarmenLog(const std::string& path,
   recording.scans = *std::move(scans);
   const auto num_beams =
       static_cast<int>(recording.scans.front().ranges.size());
+  const bool is_half_turn =
+      num_beams == 180 || num_beams == 181 || num_beams == 360;
   const double field_of_view =
-      options.field_of_view.value_or(UsualFieldOfView(num_beams));
+      options.field_of_view.value_or(is_half_turn ? M_PI : 1.5 * M_PI);
   recording.first_angle = -field_of_view / 2.;
   recording.angle_increment =
       field_of_view / std::max(1, num_beams - num_beams % 2);

@@ -19,8 +19,9 @@ namespace cartographer_sdf {
 struct CarmenLogOptions {
   // Of the laser [rad]; the first beam is half of it to the right of ahead. An
   // odd number of beams reaches from one end to the other, of an even number
-  // the last one is left out. The format does not tell: none is taken for
-  // UsualFieldOfView().
+  // the last one is left out. The format does not tell: none is what is common,
+  // a half turn of 180, 181 and 360 beams, three quarters of others; a half
+  // turn of 361 beams must be told.
   std::optional<double> field_of_view;
   // Of recordings whose scans are only counted: scan i was made at 1e9 + i *
   // seconds_per_scan [s].
@@ -28,10 +29,6 @@ struct CarmenLogOptions {
 };
 
 [[nodiscard]] std::string Validate(const CarmenLogOptions& options);
-
-// Of common scanners [rad]: of 180, 181 and 360 beams a half turn, of others
-// three quarters. A half turn of 361 beams must be told.
-[[nodiscard]] double UsualFieldOfView(int num_beams);
 
 // Lines "FLASER n r_1 ... r_n x y theta odometry_x odometry_y odometry_theta
 // time host time"; others are passed over. Times that are nothing but numbers

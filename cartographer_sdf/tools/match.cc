@@ -9,7 +9,7 @@
 
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/closing/closure.h"
-#include "cartographer_sdf/closing/selection_between.h"
+#include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/evaluation/learning_tables.h"
 #include "cartographer_sdf/evaluation/shape_context.h"
 #include "cartographer_sdf/execution/parallel_for.h"

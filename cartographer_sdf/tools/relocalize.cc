@@ -81,7 +81,7 @@ absl::Status CheckNumStarts() {
 absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
                            StageProgress* const progress) {
   const Options& options = task.options;
-  const absl::StatusOr<MapWithScans> query = ReadMapWithScans(FLAGS_query);
+  const absl::StatusOr<DescribedMap> query = ReadMapWithScans(FLAGS_query);
   if (!query.ok()) return query.status();
   double longest = 0.;
   for (const auto& [id, summary] : SummarizeTrajectories(query->state)) {
@@ -96,8 +96,7 @@ absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
         FLAGS_num_starts == 1 ? 0. : latest_start * k / (FLAGS_num_starts - 1);
     const ScanMap window =
         DescribeScans(options.scan_places, options.loop_closing.place,
-                      options.loop_closing.recognition.match, query->state,
-                      query->point_clouds,
+                      options.loop_closing.recognition.match, *query,
                       TimeWindow{start, FLAGS_first_seconds}, task.executor);
     const Localization result =
         LocalizeIn(options.localization, options.loop_closing, map, window.map,

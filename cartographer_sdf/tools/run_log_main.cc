@@ -15,7 +15,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "cartographer_sdf/live/host_options.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/log_run.h"
 #include "cartographer_sdf/recording/carmen_log.h"

@@ -53,14 +53,14 @@ absl::Status WriteMapAndReport(
     const PoseGraph& pose_graph,
     const std::function<absl::Status(const SubmapsReader&)>& write_report,
     StageProgress* const progress) {
-  std::optional<PreparedMap> output;
+  std::optional<RecordWriter> output;
   const auto read_and_write =
       [&](const SubmapCallback& on_submap) -> absl::Status {
     if (FLAGS_output.empty()) {
       return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
           .status();
     }
-    absl::StatusOr<PreparedMap> map =
+    absl::StatusOr<RecordWriter> map =
         PrepareMap(FLAGS_input, FLAGS_output, pose_graph, {on_submap, {}},
                    progress->Begin("write"));
     if (map.ok()) output.emplace(*std::move(map));

@@ -63,11 +63,18 @@ struct Room {
     return node.index < 50 ? Rigid2(1. + 0.3 * k, 2.2, 0.1 * k)
                            : Rigid2(5.5 - 0.1 * k, 4.2 - 0.2 * k, 2. - 0.1 * k);
   }
+  [[nodiscard]] PointCloud2 ScanAt(const Rigid2& T_world_node) const {
+    PointCloud2 scan;
+    for (const SurfacePoint& point :
+         testing::TakeScan(building, T_world_node)) {
+      scan.push_back(point.position.cast<float>());
+    }
+    return scan;
+  }
   [[nodiscard]] ScansByNode Scans() const {
     ScansByNode scans;
     for (const Constraint& constraint : pose_graph.constraints) {
-      scans[constraint.node] =
-          testing::TakeScan(building, T_world_node(constraint.node));
+      scans[constraint.node] = ScanAt(T_world_node(constraint.node));
     }
     return scans;
   }
@@ -166,7 +173,7 @@ TEST(GenerateConstraintsTest, ScansThatDisagreeGiveNoConstraint) {
   Room room;
   ScansByNode scans = room.Scans();
   // A scan of another room: few points are on walls.
-  scans[{0, 93}] = testing::TakeScan(room.building, Rigid2(13.5, 3.4, 0.));
+  scans[{0, 93}] = room.ScanAt(Rigid2(13.5, 3.4, 0.));
   EXPECT_THAT(room.Generate(scans), SizeIs(9));
   // A false closure: no scan fits, or it moves too far.
   room.closure.T_reference_query =

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/closing/selection_between.h"
-
 #include <limits>
 
+#include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/place_store/described_map.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"

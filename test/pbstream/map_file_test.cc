@@ -305,7 +305,7 @@ TEST_F(MapFileTest, APreparedMapAppearsWhenItIsCommitted) {
   const PoseGraph graph = Read(input_).pose_graph;
   for (const bool is_committed : {false, true}) {
     {
-      absl::StatusOr<PreparedMap> map = PrepareMap(input_, output_, graph);
+      absl::StatusOr<RecordWriter> map = PrepareMap(input_, output_, graph);
       ASSERT_TRUE(map.ok()) << map.status();
       EXPECT_FALSE(std::filesystem::exists(output_));
       ASSERT_TRUE(!is_committed || map->Commit().ok());

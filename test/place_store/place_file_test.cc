@@ -10,7 +10,6 @@
 
 #include "cartographer_sdf/pbstream/record_stream.h"
 #include "cartographer_sdf/place_index.pb.h"
-#include "cartographer_sdf/place_store/place_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"

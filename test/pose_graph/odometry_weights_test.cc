@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/pose_graph/odometry_weights.h"
-
 #include <optional>
 
+#include "cartographer_sdf/pose_graph/optimization.h"
 #include "gtest/gtest.h"
 #include "test/testing/synthetic_pose_graph.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "cartographer_sdf/recording/motion.h"
+#include "cartographer_sdf/recording/recording.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/shared_data.h"
