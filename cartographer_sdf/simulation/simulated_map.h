@@ -17,7 +17,6 @@
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/pbstream/point_cloud.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/simulation/drift.h"
 #include "cartographer_sdf/simulation/drive.h"

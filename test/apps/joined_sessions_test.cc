@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/apps/joined_sessions.h"
+#include "cartographer_sdf/apps/session.h"
 
 #include <map>
 #include <optional>

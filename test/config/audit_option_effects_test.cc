@@ -11,7 +11,7 @@
 #include "cartographer_sdf/apps/audit.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
-#include "cartographer_sdf/report/close_loops_report.h"
+#include "cartographer_sdf/report/reports.h"
 #include "gtest/gtest.h"
 #include "test/testing/option_effects.h"
 #include "test/testing/visited_rooms.h"

@@ -121,10 +121,9 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfScanPlacesIsWithout) {
   base.num_scans = 12;
   const std::vector<testing::Scenario<ScanPlaceOptions>> scenarios = {
       {"", [this](const ScanPlaceOptions& options) {
-         const DescribedMap& map = rooms_.map();
          const ScanMap scans =
-             DescribeScans(options, PlaceOptions(), MatchOptions(), map.state,
-                           map.point_clouds, {0., 12.}, MakeExecutor(1));
+             DescribeScans(options, PlaceOptions(), MatchOptions(),
+                           rooms_.map(), {0., 12.}, MakeExecutor(1));
          std::ostringstream text;
          text.precision(9);
          for (const auto& [id, grid] : scans.grids) {

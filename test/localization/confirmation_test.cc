@@ -41,10 +41,14 @@ class ConfirmPlacementTest : public ::testing::Test {
   }
 
   [[nodiscard]] Confirmation Confirm(const size_t max_num_pairs = 50) const {
-    return ConfirmPlacement(PlacementOptions(), consistency_, MatchOptions(),
-                            {&first_, &*map_layout_},
-                            {&again_, &*query_layout_}, votes_, max_num_pairs,
-                            MakeExecutor(1));
+    const PlacementOptions placement;
+    const MatchOptions match;
+    return ConfirmPlacement({placement,
+                             consistency_,
+                             match,
+                             {&first_, &*map_layout_},
+                             {&again_, &*query_layout_}},
+                            votes_, max_num_pairs, MakeExecutor(1));
   }
 
   const VisitedRooms rooms_;
