@@ -30,9 +30,6 @@
 DEFINE_string(relations, "",
               "Relations of scans that were verified by hand, lines of i, j, "
               "x, y, theta, t1, t2.");
-DEFINE_double(seconds_per_scan, 0.1,
-              "Scan i of the relations has the stamp 1e9 + i * this in the "
-              "map [s].");
 DEFINE_string(matches, "",
               "Matches to score, as `match` writes them; several files are "
               "separated by commas.");

@@ -44,6 +44,9 @@ DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
 DEFINE_string(frozen_trajectories, "",
               "Trajectories that stay where they are, by their numbers, "
               "separated by commas.");
+DEFINE_double(seconds_per_scan, 0.1,
+              "Time between the scans of a recording without a clock [s]: scan "
+              "i has the stamp 1e9 + i * this in the map.");
 DEFINE_int32(threads, 0,
              "Number of threads; 0 for as many as the machine has. The result "
              "does not depend on it.");

@@ -24,6 +24,7 @@ DECLARE_string(report);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);
 DECLARE_string(frozen_trajectories);
+DECLARE_double(seconds_per_scan);
 DECLARE_int32(threads);
 
 namespace cartographer_sdf {

@@ -43,8 +43,6 @@ DEFINE_double(
 DEFINE_double(field_of_view, 0.,
               "Of the laser [degrees]. 0 for the usual one of so many beams: "
               "180 for 180, 181 and 360 beams, 270 for others.");
-DEFINE_double(seconds_per_scan, 0.1,
-              "Time between the scans of a recording without a clock [s].");
 DEFINE_bool(verbose, false, "Whether what Cartographer logs is shown.");
 
 namespace cartographer_sdf {

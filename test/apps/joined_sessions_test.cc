@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-#include "cartographer_sdf/apps/session.h"
-
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "cartographer_sdf/apps/session.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
@@ -65,21 +63,14 @@ class JoinSessionsTest : public ::testing::Test {
 
 TEST_F(JoinSessionsTest, NumbersWhatIsPlaced) {
   const JoinedSessions joined = Join();
-  EXPECT_THAT(joined.sessions, ElementsAre(0u, 2u));
+  EXPECT_THAT(joined.parts, ElementsAre(Key(0u), Key(2u)));
+  EXPECT_EQ(joined.parts.at(0).path, "first");
+  EXPECT_EQ(joined.parts.at(2).path, "third");
   EXPECT_THAT(joined.state.trajectories, ElementsAre(0, 1));
   EXPECT_THAT(joined.session_of_trajectory,
               ElementsAre(Pair(0, 0u), Pair(1, 2u)));
   EXPECT_EQ(joined.SessionOf({1, 4}), 2u);
-  EXPECT_EQ(joined.PartOf(0), 0u);
-  EXPECT_EQ(joined.PartOf(1), std::nullopt);
-  EXPECT_EQ(joined.PartOf(2), 1u);
-  EXPECT_EQ(joined.Renamed(1, SubmapId{7, 4}), (SubmapId{1, 4}));
-  Match match;
-  match.pair = {{7, 3}, {7, 5}, Rigid2(1., 2., 3.), 4.};
-  const Match renamed = joined.Renamed(match, 1, 0);
-  EXPECT_EQ(renamed.pair.reference, (SubmapId{1, 3}));
-  EXPECT_EQ(renamed.pair.query, (SubmapId{0, 5}));
-  EXPECT_EQ(renamed.pair.score, 4.);
+  EXPECT_EQ(Renumbered(joined.parts.at(2), SubmapId{7, 4}), (SubmapId{1, 4}));
 }
 
 TEST_F(JoinSessionsTest, MovesEachSessionToItsPlace) {
