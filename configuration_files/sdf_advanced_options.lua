@@ -308,8 +308,11 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- [m] Submaps closer together than this are partly the same evidence.
       -- Larger: more must be seen.
       independent_distance_meters = 10.,
-      -- One submap counts at most so much (log-odds).
+      -- One match counts at most so much (log-odds).
       max_place_score = 10.,
+      -- A submap counts by its best match, and with this fraction of its other
+      -- matches. Larger: less must be seen, more look-alikes are believed.
+      further_match_weight = 0.,
       -- Largest fraction of the submaps that may contradict the answer. Larger:
       -- tolerates more change since the map was made.
       max_contradicting_fraction = 0.3,
@@ -320,6 +323,9 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- [m^2] Least area seen, summed over the submaps.
       min_observed_area = 20.,
     },
+    -- Whether matches count, too, that show too little to be accepted, but are
+    -- more likely right than wrong. One must be accepted in any case.
+    count_likely_matches = false,
     -- Submaps of the query, evenly spaced, that are searched in the map first;
     -- twice as many each time that leaves the answer uncertain. Larger: slower
     -- where few are enough.

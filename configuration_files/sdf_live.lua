@@ -45,7 +45,7 @@ SDF_LIVE = {
     -- The best so many submaps of the map are matched with the query. Larger:
     -- found sooner, more CPU time.
     max_num_candidates = 50,
-    -- As for saved maps.
+    -- As for saved maps, but for what is below.
     localizer = SDF_GLOBAL_CONSTRAINTS.localization,
     -- Queries in a row that must say the same.
     min_num_queries = 2,
@@ -58,5 +58,11 @@ SDF_LIVE = {
 -- The best so many places are matched with a new one. Larger: more is found,
 -- more CPU time.
 SDF_LIVE.retrieval.max_num_candidates = 15
+
+-- A young query is one place, which sees too little for most of its matches to
+-- be certain: all matches that may be right add up, and must be more in return.
+SDF_LIVE.localization.localizer.count_likely_matches = true
+SDF_LIVE.localization.localizer.placement.further_match_weight = 1.
+SDF_LIVE.localization.localizer.placement.min_score = 7.
 
 return SDF_LIVE

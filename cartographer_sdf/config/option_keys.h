@@ -264,6 +264,7 @@ inline void VisitOptions(OptionVisitor& visit, AuditOptions& options) {
 inline void VisitOptions(OptionVisitor& visit, PlacementOptions& options) {
   visit("independent_distance_meters", options.independent_distance_meters);
   visit("max_place_score", options.max_place_score);
+  visit("further_match_weight", options.further_match_weight);
   visit("min_score", options.min_score);
   visit("min_lead", options.min_lead);
   visit("max_contradicting_fraction", options.max_contradicting_fraction);
@@ -281,6 +282,7 @@ inline void VisitOptions(OptionVisitor& visit, ScanPlaceOptions& options) {
 
 inline void VisitOptions(OptionVisitor& visit, LocalizationOptions& options) {
   visit("placement", options.placement);
+  visit("count_likely_matches", options.count_likely_matches);
   visit("num_first_places", options.num_first_places);
   visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
 }

@@ -43,6 +43,14 @@ constexpr char kTableName[] = "SDF_LIVE";
 
 }  // namespace
 
+LocalizationOptions LocalizerOfYoungQueries() {
+  LocalizationOptions options;
+  options.count_likely_matches = true;
+  options.placement.further_match_weight = 1.;
+  options.placement.min_score = 7.;
+  return options;
+}
+
 std::string Validate(const LiveLocalizationOptions& options) {
   if (!(options.query_interval_meters > 0.)) {
     return "query_interval_meters must be positive";

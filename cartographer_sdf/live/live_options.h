@@ -22,6 +22,10 @@
 
 namespace cartographer_sdf {
 
+// A young query is one place, which sees too little for most of its matches to
+// be certain: all matches that may be right add up, and must be more in return.
+[[nodiscard]] LocalizationOptions LocalizerOfYoungQueries();
+
 // Localisation of a new trajectory in a loaded map: the localiser is queried
 // repeatedly with what the robot has seen lately, long before the first submap
 // is finished.
@@ -38,7 +42,7 @@ struct LiveLocalizationOptions {
   // The best so many submaps of the map are matched with the query, which shows
   // less than a submap does. Larger: found sooner, more CPU time.
   int max_num_candidates = 50;
-  LocalizationOptions localizer;
+  LocalizationOptions localizer = LocalizerOfYoungQueries();
   // So many queries in a row, each after more driving, must say the same.
   int min_num_queries = 2;
   // Poses nearer than this are the same pose [m], [rad].

@@ -87,19 +87,17 @@ class Localizer {
 
   // Round by round, until the answer is certain.
   void Search() {
-    std::vector<Match> accepted;
+    std::vector<Match> voting;
     for (const std::map<SubmapId, Place>& places : Rounds()) {
       for (Match& match : match_places_(places, clock_.Begin("match"))) {
         // Likely, but for the rival.
         num_ambiguous_ +=
             match.verdict == Verdict::kAmbiguous &&
             match.pair.score >= task_.match.verification.judgement.min_score;
-        if (match.verdict == Verdict::kAccepted) {
-          accepted.push_back(std::move(match));
-        }
+        if (Votes(match)) voting.push_back(std::move(match));
       }
-      std::stable_sort(accepted.begin(), accepted.end(), &ByIds);
-      result_.matches = accepted;
+      std::stable_sort(voting.begin(), voting.end(), &ByIds);
+      result_.matches = voting;
       result_.contradictions.clear();
       clock_.Begin("vote");
       Vote();
@@ -110,6 +108,20 @@ class Localizer {
       Decide();
       if (result_.verdict == LocalizationVerdict::kLocalized) return;
     }
+  }
+
+  [[nodiscard]] bool Votes(const Match& match) const {
+    return match.verdict == Verdict::kAccepted ||
+           (options_.count_likely_matches &&
+            match.verdict == Verdict::kUnlikely && match.pair.score > 0.);
+  }
+
+  [[nodiscard]] bool HasAcceptedVote(const Placement& placement) const {
+    return std::any_of(placement.votes.begin(), placement.votes.end(),
+                       [this](const size_t vote) {
+                         return result_.matches[vote].verdict ==
+                                Verdict::kAccepted;
+                       });
   }
 
   void Vote() {
@@ -197,7 +209,12 @@ class Localizer {
     const std::string where =
         DescribeWhere(*task_.map.layout, result_.matches, best);
     const double fraction = ContradictingFraction();
-    if (best.score < options.min_score) {
+    if (!HasAcceptedVote(best)) {
+      Refuse(LocalizationVerdict::kUncertain,
+             absl::StrFormat("too little agrees: no match at %s is certain by "
+                             "itself; more of the place must be seen",
+                             where));
+    } else if (best.score < options.min_score) {
       Refuse(LocalizationVerdict::kUncertain,
              absl::StrFormat(
                  "too little agrees: score %.2f at %s, %.2f is needed; more of "

@@ -28,6 +28,9 @@ namespace cartographer_sdf {
 
 struct LocalizationOptions {
   PlacementOptions placement;
+  // Whether matches vote that show too little to be accepted, but are more
+  // likely right than wrong. One vote at least must be accepted in any case.
+  bool count_likely_matches = false;
   // Places of the query, evenly spaced, that are matched at first; twice as
   // many in all each time that leaves the answer uncertain. Larger: slower
   // where few are enough.
@@ -63,11 +66,11 @@ struct Localization {
   // where there is none.
   std::optional<double> score;
   std::optional<double> runner_up_score;
-  // All accepted matches (references in the map), and the placements that they
+  // All matches that vote (references in the map), and the placements that they
   // vote for: the best first, localized or not.
   std::vector<Match> matches;
   std::vector<Placement> placements;
-  // Of accepted matches: votes for the best placement, and votes that it
+  // Votes for the best placement, and votes that it
   // excludes; and pairs of submaps that it would lay over each other and that
   // contradict each other there.
   int num_agreeing = 0;

@@ -117,16 +117,22 @@ std::vector<std::vector<size_t>> GroupVotes(const VerdictTable& votes) {
   return groups;
 }
 
-// Evidence of different places: each place of the query by its best vote, less
+// Evidence of different places: each place of the query by its votes, less
 // where a better one is near.
 double ScoreOf(const PlacementOptions& options, const MapPair& maps,
                const std::vector<PairPose>& closures,
                const std::vector<size_t>& votes) {
-  std::map<SubmapId, double> scores;
+  std::map<SubmapId, double> best, sums;
   for (const size_t vote : votes) {
-    double& score = scores.emplace(closures[vote].query, 0.).first->second;
-    score = std::max(score,
-                     std::min(closures[vote].score, options.max_place_score));
+    const SubmapId& query = closures[vote].query;
+    const double score =
+        std::clamp(closures[vote].score, 0., options.max_place_score);
+    best[query] = std::max(best[query], score);
+    sums[query] += score;
+  }
+  std::map<SubmapId, double> scores;
+  for (const auto& [id, score] : best) {
+    scores[id] = score + options.further_match_weight * (sums[id] - score);
   }
   std::vector<std::pair<double, SubmapId>> order;
   for (const auto& [id, score] : scores) order.emplace_back(-score, id);
@@ -182,6 +188,10 @@ std::string Validate(const PlacementOptions& options) {
   }
   if (!(options.max_place_score > 0. && options.min_score > 0.)) {
     return "max_place_score and min_score must be positive";
+  }
+  if (!(options.further_match_weight >= 0. &&
+        options.further_match_weight <= 1.)) {
+    return "further_match_weight must lie between 0 and 1";
   }
   if (!(options.min_lead >= 0.)) return "min_lead must not be negative";
   if (!(options.max_contradicting_fraction >= 0. &&

@@ -30,8 +30,12 @@ struct PlacementOptions {
   // Places of the query nearer together than this tell partly the same, in
   // proportion [m].
   double independent_distance_meters = 10.;
-  // One place counts at most so much, however certain it seems; log-odds.
+  // One match counts at most so much, however certain it seems; log-odds.
   double max_place_score = 10.;
+  // A place counts by its best match with a submap of the map, and with this
+  // fraction of the scores of the others: submaps of the map that overlap tell
+  // partly the same, but a query that consists of one place has no more.
+  double further_match_weight = 0.;
   // Least score of all places that speak for the placement; log-odds. Above
   // what look-alikes in other buildings reach.
   double min_score = 6.5;

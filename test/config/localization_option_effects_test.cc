@@ -95,6 +95,14 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
   std::vector<Match> matches_of_both = MatchesOfOne();
   matches_of_both.push_back(
       rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kEastAgain, 6.));
+  std::vector<Match> with_likely = MatchesOfOne();
+  with_likely.push_back(
+      rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kEastAgain, 2.));
+  with_likely.back().verdict = Verdict::kUnlikely;
+  // Of one submap, found from both rooms.
+  const std::vector<Match> from_both_rooms = {
+      rooms_.MakeMatch(VisitedRooms::kWestFirst, VisitedRooms::kWestAgain, 9.),
+      rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kWestAgain, 5.)};
   const std::vector<testing::Scenario<LocalizationOptions>> scenarios = {
       {"",
        [&](const LocalizationOptions& options) {
@@ -103,6 +111,14 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
       {"placement.max_contradicting_fraction",
        [&](const LocalizationOptions& options) {
          return Locate(options, MatchesOfOne(), kMisplaced);
+       }},
+      {"placement.further_match_weight",
+       [&](const LocalizationOptions& options) {
+         return Locate(options, from_both_rooms);
+       }},
+      {"count_likely_matches",
+       [&](const LocalizationOptions& options) {
+         return Locate(options, with_likely);
        }},
       // Where either submap is enough.
       {"num_first_places", [&](const LocalizationOptions& options) {

@@ -36,11 +36,11 @@ class PlacementTest : public ::testing::Test {
   }
   static std::vector<Placement> FindPlacements(
       const MapState& map, const MapState& query,
-      const std::vector<PairPose>& votes) {
+      const std::vector<PairPose>& votes,
+      const PlacementOptions& options = PlacementOptions()) {
     const MapLayout map_layout = Layout(map), query_layout = Layout(query);
     return cartographer_sdf::FindPlacements(
-        PlacementOptions(), ConsistencyOptions(), {&map_layout, &query_layout},
-        votes);
+        options, ConsistencyOptions(), {&map_layout, &query_layout}, votes);
   }
   // Every submap has observed its surroundings evenly.
   static MapLayout Layout(const MapState& map) {
@@ -93,6 +93,19 @@ TEST_F(PlacementTest, OnePlaceCountsSoMuchAtMost) {
   const std::vector<Placement> placements = Find({Closure(0, 0, 0., 50.)});
   ASSERT_THAT(placements, SizeIs(1));
   EXPECT_NEAR(placements[0].score, PlacementOptions().max_place_score, 1e-9);
+}
+
+TEST_F(PlacementTest, FurtherMatchesOfOnePlaceCountAsAsked) {
+  const std::vector<PairPose> votes = {
+      Closure(0, 1, 0., 2.), Closure(1, 1, 0., 50.), Closure(2, 1, 0., 4.)};
+  for (const double weight : {0., 0.5, 1.}) {
+    PlacementOptions options;
+    options.further_match_weight = weight;
+    const std::vector<Placement> placements =
+        FindPlacements(map_, query_, votes, options);
+    ASSERT_THAT(placements, SizeIs(1));
+    EXPECT_NEAR(placements[0].score, 10. + weight * (2. + 4.), 1e-9);
+  }
 }
 
 TEST_F(PlacementTest, LookAlikesAreRivals) {
@@ -163,6 +176,9 @@ TEST(PlacementOptionsTest, AreValidated) {
   EXPECT_NE(Validate(options), "");
   options = PlacementOptions();
   options.max_contradicting_fraction = 1.5;
+  EXPECT_NE(Validate(options), "");
+  options = PlacementOptions();
+  options.further_match_weight = 1.5;
   EXPECT_NE(Validate(options), "");
 }
 

@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/localization/localizer.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cartographer_sdf/execution/parallel_for.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "test/testing/building.h"
+#include "test/testing/visited_rooms.h"
+
+namespace cartographer_sdf::localizer_test {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::IsPoseNear;
+using ::testing::SizeIs;
+using testing::VisitedRooms;
+
+// The first visit is the map; the query is the west room alone, one place.
+class LocalizeTest : public ::testing::Test {
+ protected:
+  LocalizeTest() {
+    const DescribedMap& map = rooms_.map();
+    for (const auto& [id, place] : map.places) {
+      if (id < VisitedRooms::kWestAgain) map_.emplace(id, place);
+      if (id == VisitedRooms::kWestAgain) query_.emplace(id, place);
+    }
+    // Nothing beyond the votes is asked for.
+    options_.max_num_confirmed_pairs = 0;
+  }
+
+  // The place of the query in the west room; `error` as the query sees it.
+  [[nodiscard]] Match InWestRoom(const double score, const Verdict verdict,
+                                 const Rigid2& error = Rigid2()) const {
+    Match match = rooms_.MakeMatch(VisitedRooms::kWestFirst,
+                                   VisitedRooms::kWestAgain, score, error);
+    match.verdict = verdict;
+    return match;
+  }
+  // The same place, as it is seen from the submap of the east room.
+  [[nodiscard]] Match FromEastRoom(const double score,
+                                   const Verdict verdict) const {
+    Match match = rooms_.MakeMatch(VisitedRooms::kEastFirst,
+                                   VisitedRooms::kWestAgain, score);
+    match.verdict = verdict;
+    return match;
+  }
+  [[nodiscard]] Localization Find(const std::vector<Match>& matches) const {
+    const DescribedMap& map = rooms_.map();
+    const MapLayout layout =
+        MakeMapLayout(map.state.pose_graph, map.odometry, map.places);
+    return Localize(
+        options_, ConsistencyOptions(), MatchOptions(), {&map_, &layout},
+        {&query_, &layout},
+        [&matches](const std::map<SubmapId, Place>&, const ProgressCallback&) {
+          return matches;
+        },
+        MakeExecutor(1));
+  }
+
+  const VisitedRooms rooms_;
+  std::map<SubmapId, Place> map_, query_;
+  LocalizationOptions options_;
+};
+
+TEST_F(LocalizeTest, OneCertainMatchIsEnough) {
+  const Localization found = Find({InWestRoom(7., Verdict::kAccepted)});
+  ASSERT_EQ(found.verdict, LocalizationVerdict::kLocalized) << found.reason;
+  // The layout of both is that of local SLAM, which drifts by centimetres.
+  EXPECT_THAT(*found.T_map_query,
+              IsPoseNear(rooms_.T_world_submap(VisitedRooms::kWestAgain) *
+                             rooms_.map()
+                                 .state.pose_graph.submap_poses
+                                 .at(VisitedRooms::kWestAgain)
+                                 .Inverse(),
+                         0.01, 0.001));
+  EXPECT_NEAR(*found.score, 7., 1e-9);
+}
+
+TEST_F(LocalizeTest, SeveralThatAreLessCertainAddUpWhereAsked) {
+  const std::vector<Match> matches = {InWestRoom(4., Verdict::kAccepted),
+                                      FromEastRoom(3., Verdict::kAccepted)};
+  EXPECT_EQ(Find(matches).verdict, LocalizationVerdict::kUncertain);
+  options_.placement.further_match_weight = 1.;
+  const Localization found = Find(matches);
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kLocalized) << found.reason;
+  EXPECT_NEAR(*found.score, 7., 1e-9);
+  EXPECT_THAT(found.matches, SizeIs(2));
+}
+
+TEST_F(LocalizeTest, LikelyMatchesCountWhereAskedBesideAnAcceptedOne) {
+  options_.placement.further_match_weight = 1.;
+  const std::vector<Match> matches = {InWestRoom(4., Verdict::kAccepted),
+                                      FromEastRoom(2.6, Verdict::kUnlikely)};
+  EXPECT_EQ(Find(matches).verdict, LocalizationVerdict::kUncertain);
+  options_.count_likely_matches = true;
+  EXPECT_EQ(Find(matches).verdict, LocalizationVerdict::kLocalized);
+  // Not what is contradicted, nor what is less likely right than wrong.
+  for (const auto& [score, verdict] : {std::pair(2.6, Verdict::kContradicted),
+                                       std::pair(2.6, Verdict::kAmbiguous),
+                                       std::pair(-0.1, Verdict::kUnlikely)}) {
+    EXPECT_THAT(
+        Find({InWestRoom(4., Verdict::kAccepted), FromEastRoom(score, verdict)})
+            .matches,
+        SizeIs(1));
+  }
+}
+
+TEST_F(LocalizeTest, LikelyMatchesAloneAreNeverEnough) {
+  options_.placement.further_match_weight = 1.;
+  options_.count_likely_matches = true;
+  const Localization found = Find({InWestRoom(2.9, Verdict::kUnlikely),
+                                   InWestRoom(2.9, Verdict::kUnlikely),
+                                   FromEastRoom(2.9, Verdict::kUnlikely)});
+  EXPECT_GT(*found.score, options_.placement.min_score);
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kUncertain);
+  EXPECT_THAT(found.reason, HasSubstr("certain by itself"));
+  EXPECT_EQ(found.T_map_query, std::nullopt);
+}
+
+// A rival that only likely matches speak for is a rival all the same.
+TEST_F(LocalizeTest, LikelyMatchesElsewhereMakeItAmbiguous) {
+  options_.placement.further_match_weight = 1.;
+  options_.count_likely_matches = true;
+  const Match elsewhere =
+      InWestRoom(2.9, Verdict::kUnlikely, Rigid2(3., 1., 2.));
+  EXPECT_EQ(Find({InWestRoom(7., Verdict::kAccepted), elsewhere}).verdict,
+            LocalizationVerdict::kLocalized);
+  const Localization found =
+      Find({InWestRoom(7., Verdict::kAccepted), elsewhere, elsewhere});
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kAmbiguous);
+  EXPECT_NEAR(*found.runner_up_score, 5.8, 1e-9);
+}
+
+TEST_F(LocalizeTest, SaysWhenTooLittleWasSeen) {
+  options_.placement.min_observed_area = 1e4;
+  const Localization found = Find({InWestRoom(9., Verdict::kAccepted)});
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kTooLittleSeen);
+  EXPECT_THAT(found.reason, HasSubstr("10000 are needed"));
+}
+
+}  // namespace
+}  // namespace cartographer_sdf::localizer_test
