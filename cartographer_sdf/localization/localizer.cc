@@ -170,6 +170,13 @@ class Localizer {
     result_.reason = reason;
   }
 
+  void Accept(const Placement& placement) {
+    result_.verdict = LocalizationVerdict::kLocalized;
+    result_.reason =
+        absl::StrFormat("%d matches of submaps agree", placement.votes.size());
+    result_.T_map_query = placement.T_map_query;
+  }
+
   void RefuseWithoutPlacement() {
     if (num_ambiguous_ > 0) {
       Refuse(LocalizationVerdict::kAmbiguous,
@@ -234,10 +241,7 @@ class Localizer {
                  DescribeWhere(*task_.map.layout, result_.matches, *rival),
                  rival->score));
     } else {
-      result_.verdict = LocalizationVerdict::kLocalized;
-      result_.reason =
-          absl::StrFormat("%d matches of submaps agree", best.votes.size());
-      result_.T_map_query = best.T_map_query;
+      Accept(best);
     }
   }
 
