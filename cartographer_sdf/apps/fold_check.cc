@@ -18,15 +18,15 @@ struct Overlap {
   std::optional<Match> contradiction;
 };
 
-struct PairToCheck {
+struct OverlappingPair {
   const Place* reference;
   const Place* query;
   std::optional<Overlap> overlap;
 };
 
-std::vector<PairToCheck> ListPairs(const int min_index_gap,
-                                   const std::map<SubmapId, Place>& places) {
-  std::vector<PairToCheck> pairs;
+std::vector<OverlappingPair> ListPairs(
+    const int min_index_gap, const std::map<SubmapId, Place>& places) {
+  std::vector<OverlappingPair> pairs;
   for (auto reference = places.begin(); reference != places.end();
        ++reference) {
     for (auto query = std::next(reference); query != places.end(); ++query) {
@@ -42,7 +42,7 @@ std::vector<PairToCheck> ListPairs(const int min_index_gap,
 // None where the graph does not lay the two over each other.
 std::optional<Overlap> FindOverlap(const FoldCheckOptions& options,
                                    const VerificationOptions& verification,
-                                   const PairToCheck& pair,
+                                   const OverlappingPair& pair,
                                    const PoseGraph& graph) {
   const Rigid2 T_reference_query =
       graph.submap_poses.at(pair.reference->id).Inverse() *
@@ -74,13 +74,13 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
     const FoldCheckOptions& options, const RecognitionOptions& recognition,
     const JoinedSessions& joined, const PoseGraph& merged,
     const Executor& executor) {
-  std::vector<PairToCheck> pairs =
+  std::vector<OverlappingPair> pairs =
       ListPairs(recognition.min_index_gap, joined.places);
-  const auto check = [&](const PairToCheck& pair, const PoseGraph& graph) {
+  const auto check = [&](const OverlappingPair& pair, const PoseGraph& graph) {
     return FindOverlap(options, recognition.match.verification, pair, graph);
   };
   executor(pairs.size(), [&](const size_t k) {
-    PairToCheck& pair = pairs[k];
+    OverlappingPair& pair = pairs[k];
     pair.overlap = check(pair, merged);
     if (!pair.overlap || !pair.overlap->contradiction ||
         joined.SessionOf(pair.reference->id) !=
@@ -92,7 +92,7 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
     if (before && before->contradiction) pair.overlap->contradiction.reset();
   });
   std::map<std::pair<size_t, size_t>, SessionOverlap> overlaps;
-  for (PairToCheck& pair : pairs) {
+  for (OverlappingPair& pair : pairs) {
     if (!pair.overlap) continue;
     SessionOverlap& overlap =
         overlaps[std::minmax({joined.SessionOf(pair.reference->id),

@@ -38,7 +38,7 @@ std::map<NodeId, std::vector<Insertion>> Insertions(
 }
 
 // A constraint as a relation of two submaps, the lower id as the reference.
-struct Relation {
+struct GroupedRelation {
   size_t constraint = 0;
   Rigid2 T_reference_query;
 };
@@ -61,20 +61,23 @@ const Insertion* BestInsertion(
 }
 
 // Takes out of `relations` the largest set around one of them.
-ConstraintGroup TakeLargestGroup(const GroupingOptions& options,
-                                 const PairOfSubmaps& pair,
-                                 const Eigen::Vector2d& query_centroid,
-                                 std::vector<Relation>* const relations) {
-  const auto are_near = [&](const Relation& a, const Relation& b) {
+ConstraintGroup TakeLargestGroup(
+    const GroupingOptions& options, const PairOfSubmaps& pair,
+    const Eigen::Vector2d& query_centroid,
+    std::vector<GroupedRelation>* const relations) {
+  const auto are_near = [&](const GroupedRelation& a,
+                            const GroupedRelation& b) {
     return AreNear(a.T_reference_query, b.T_reference_query, query_centroid,
                    {options.max_distance_meters, options.max_rotation});
   };
-  const Relation* centre = nullptr;
+  const GroupedRelation* centre = nullptr;
   size_t most = 0;
-  for (const Relation& candidate : *relations) {
-    const size_t count = static_cast<size_t>(std::count_if(
-        relations->begin(), relations->end(),
-        [&](const Relation& other) { return are_near(candidate, other); }));
+  for (const GroupedRelation& candidate : *relations) {
+    const size_t count =
+        static_cast<size_t>(std::count_if(relations->begin(), relations->end(),
+                                          [&](const GroupedRelation& other) {
+                                            return are_near(candidate, other);
+                                          }));
     if (count > most) {
       most = count;
       centre = &candidate;
@@ -83,8 +86,8 @@ ConstraintGroup TakeLargestGroup(const GroupingOptions& options,
   // Not finite poses would be near to nothing; readers refuse them.
   CHECK(centre != nullptr);
   ConstraintGroup group{pair.first, pair.second, centre->T_reference_query, {}};
-  std::vector<Relation> rest;
-  for (const Relation& relation : *relations) {
+  std::vector<GroupedRelation> rest;
+  for (const GroupedRelation& relation : *relations) {
     if (are_near(*centre, relation)) {
       group.constraints.push_back(relation.constraint);
     } else {
@@ -97,13 +100,13 @@ ConstraintGroup TakeLargestGroup(const GroupingOptions& options,
 
 // Poses of pairs of submaps, as inter-submap constraints have them; those that
 // relate a node to no other submap with a centroid go to `unrelated`.
-std::map<PairOfSubmaps, std::vector<Relation>> RelateSubmaps(
+std::map<PairOfSubmaps, std::vector<GroupedRelation>> RelateSubmaps(
     const PoseGraph& pose_graph,
     const std::map<SubmapId, Eigen::Vector2d>& centroids,
     std::vector<size_t>* const unrelated) {
   const std::map<NodeId, std::vector<Insertion>> insertions =
       Insertions(pose_graph);
-  std::map<PairOfSubmaps, std::vector<Relation>> relations;
+  std::map<PairOfSubmaps, std::vector<GroupedRelation>> relations;
   for (size_t k = 0; k < pose_graph.constraints.size(); ++k) {
     const Constraint& constraint = pose_graph.constraints[k];
     if (constraint.tag != Constraint::Tag::kInterSubmap) continue;
@@ -143,7 +146,7 @@ GroupedConstraints GroupConstraints(
     const std::map<SubmapId, Eigen::Vector2d>& centroids) {
   CHECK_EQ(Validate(options), "");
   GroupedConstraints result;
-  std::map<PairOfSubmaps, std::vector<Relation>> relations =
+  std::map<PairOfSubmaps, std::vector<GroupedRelation>> relations =
       RelateSubmaps(pose_graph, centroids, &result.unrelated);
   for (auto& [pair, members] : relations) {
     const size_t first = result.groups.size();

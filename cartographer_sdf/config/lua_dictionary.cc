@@ -37,8 +37,8 @@ constexpr int kMaxInstructions = 1000000;
 constexpr int kMaxDepth = 16;
 // Of all values with their paths, in characters: tables and strings that occur
 // in several places count as often.
-constexpr size_t kMaxSize = 1000000;
-constexpr size_t kMaxLineLength = 300;
+constexpr size_t kMaxConfigurationSize = 1000000;
+constexpr size_t kMaxMessageLength = 300;
 
 // What configuration files may call. Not in it on purpose: files (io, os, load,
 // dofile), chance (math.random), catching the errors that enforce the limits
@@ -224,7 +224,8 @@ class Converter {
 
 bool Converter::Add(const std::string& path) {
   size_ += 1 + path.size();
-  if (size_ > kMaxSize) return Fail(path, "is too much to be a configuration");
+  if (size_ > kMaxConfigurationSize)
+    return Fail(path, "is too much to be a configuration");
   LuaValue& value = values[path];
   switch (lua_type(lua_, -1)) {
     case LUA_TBOOLEAN:
@@ -238,7 +239,7 @@ bool Converter::Add(const std::string& path) {
     case LUA_TSTRING: {
       size_t size = 0;
       const char* const text = lua_tolstring(lua_, -1, &size);
-      if (size > kMaxSize) return Fail(path, "is too long a text");
+      if (size > kMaxConfigurationSize) return Fail(path, "is too long a text");
       size_ += size;
       value = std::string(text, size);
       return true;
@@ -265,7 +266,7 @@ bool Converter::AddFields(const std::string& path) {
     }
     size_t size = 0;
     const char* const key = lua_tolstring(lua_, -2, &size);
-    if (size > kMaxSize) return Fail(path, "has too long a key");
+    if (size > kMaxConfigurationSize) return Fail(path, "has too long a key");
     const std::string name(key, size);
     const std::string field = absl::StrCat(path, ".", name);
     if (name.find('.') != std::string::npos) {
@@ -281,11 +282,11 @@ bool Converter::AddFields(const std::string& path) {
 }  // namespace
 
 std::string PrintableLine(const std::string_view text) {
-  std::string line(text.substr(0, kMaxLineLength));
+  std::string line(text.substr(0, kMaxMessageLength));
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   }
-  return text.size() > kMaxLineLength ? line + "..." : line;
+  return text.size() > kMaxMessageLength ? line + "..." : line;
 }
 
 absl::StatusOr<LuaDictionary> LoadLuaDictionary(

@@ -16,6 +16,7 @@
 #include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/geometry/alignment.h"
 #include "cartographer_sdf/geometry/rigid3.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -28,12 +29,9 @@ double Quantile(const std::vector<double>& sorted, const double fraction) {
                              (sorted[above] - sorted[below]);
 }
 
-// Universal time: 100 ns ticks since 0001-01-01.
-constexpr double kTicksPerSecond = 1e7;
-constexpr int64_t kUnixEpochTicks = int64_t{719162} * 24 * 3600 * 10000000;
 // Of the maps that were made from recordings without a clock, see the header.
 constexpr int64_t kFirstScanTicks =
-    kUnixEpochTicks + int64_t{1000000000} * 10000000;
+    kUnixEpochTicks + int64_t{1'000'000'000} * kTicksPerSecond;
 
 constexpr double kMaxSecondsOutside = 1.;
 constexpr double kMinLoopSeconds = 30.;
@@ -56,7 +54,8 @@ std::vector<TimedPose> Trajectory(const PoseGraph& pose_graph) {
             : trajectory.back().pose.z() +
                   NormalizeAngle(pose.rotation() - trajectory.back().pose.z());
     trajectory.push_back(
-        {static_cast<double>(ticks - kFirstScanTicks) / kTicksPerSecond,
+        {static_cast<double>(ticks - kFirstScanTicks) /
+             static_cast<double>(kTicksPerSecond),
          {pose.translation().x(), pose.translation().y(), yaw}});
   }
   return trajectory;

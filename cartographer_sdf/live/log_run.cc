@@ -97,7 +97,7 @@ class Run {
   Run(const Recording& recording, const LogRunOptions& options)
       : recording_(recording),
         options_(options),
-        distances_(DrivenDistances(recording)),
+        distances_(MetersDriven(recording)),
         uses_imu_(
             options.host.trajectory_builder.trajectory_builder_2d_options()
                 .use_imu_data()),

@@ -7,18 +7,11 @@
 #include <vector>
 
 #include "cartographer_sdf/grid/scan_grid.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
-
-// Of the file's times.
-constexpr double kTicksPerSecond = 1e7;
-
-// Weights of the host's defaults between a submap and its nodes; nobody
-// optimises with them.
-constexpr double kIntraTranslationWeight = 5e2;
-constexpr double kIntraRotationWeight = 1.6e3;
 
 // How far a place reaches from its first node, and a scan from its node [m]:
 // grids stay of a size that fits into memory, whatever the file says.
@@ -37,7 +30,7 @@ ScanGridOptions GridOptions(const ScanPlaceOptions& options) {
 bool IsIn(const TimeWindow& window, const int64_t begin, const int64_t time) {
   const double seconds =
       (static_cast<double>(time) - static_cast<double>(begin)) /
-      kTicksPerSecond;
+      static_cast<double>(kTicksPerSecond);
   return seconds >= window.start_seconds &&
          (!window.num_seconds ||
           seconds <= window.start_seconds + *window.num_seconds);

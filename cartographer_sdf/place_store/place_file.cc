@@ -81,7 +81,7 @@ bool IsCoordinate(const double value) {
   return std::abs(value) <= kMaxStoredCoordinate;  // false for NaN
 }
 
-proto::place_index::Pose ToProto(const Rigid2& pose) {
+proto::place_index::Pose PoseToProto(const Rigid2& pose) {
   proto::place_index::Pose proto;
   proto.set_x(pose.translation().x());
   proto.set_y(pose.translation().y());
@@ -127,7 +127,7 @@ void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
   proto->set_num_cells_x(geometry.size.x());
   proto->set_num_cells_y(geometry.size.y());
   proto->set_resolution(geometry.resolution);
-  *proto->mutable_t_submap_grid() = ToProto(geometry.T_submap_grid);
+  *proto->mutable_t_submap_grid() = PoseToProto(geometry.T_submap_grid);
   const size_t n = static_cast<size_t>(cells.size());
   std::string& bytes = *proto->mutable_cells();
   bytes.resize(kBytesPerCell * n);
@@ -152,7 +152,7 @@ void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
   }
   proto->set_area_per_observed_point(area);
   for (const Rigid2& pose : poses) {
-    *proto->add_self_similar_poses() = ToProto(pose);
+    *proto->add_self_similar_poses() = PoseToProto(pose);
   }
 }
 

@@ -45,7 +45,6 @@ struct NodeId {
 using PointCloud2 = std::vector<Eigen::Vector2f>;
 
 struct Node {
-  // Universal time: 100 ns ticks since 0001-01-01, as in the file.
   int64_t time = 0;
   Rigid2 T_map_node;
   // Pose by local SLAM in the trajectory's local frame; absent where the file
@@ -58,6 +57,16 @@ struct Node {
   // are covered by it.
   std::optional<Rigid2> T_previous_node_by_odometry;
 };
+
+// Universal time, as in the file: 100 ns ticks since 0001-01-01.
+constexpr int64_t kTicksPerSecond = 10'000'000;
+constexpr int64_t kUnixEpochTicks =
+    int64_t{719'162} * 24 * 3600 * kTicksPerSecond;
+
+// Cartographer's default weights of constraints between a submap and the nodes
+// that were inserted into it.
+constexpr double kIntraTranslationWeight = 5e2;
+constexpr double kIntraRotationWeight = 1.6e3;
 
 struct Constraint {
   enum class Tag { kIntraSubmap, kInterSubmap };

@@ -39,7 +39,7 @@ constexpr double kMaxLogCoordinate = 1e7;
 // No robot with a laser drives farther between two scans [m]; Cartographer
 // would make a submap of the size of the jump.
 constexpr double kMaxStep = 20.;
-constexpr double kMaxTime = 1e11;
+constexpr double kMaxLogTime = 1e11;
 // A number of scans beyond this is the seconds of a date.
 constexpr double kMaxScanNumber = 1e8;
 constexpr double kTimeOfFirstScan = 1e9;
@@ -156,7 +156,7 @@ absl::Status ParseOdometry(const LineReader& reader,
   }
   scan->T_odometry_robot = Rigid2(x, y, theta);
   scan->time = (*numbers)[3];
-  if (scan->time < 0. || scan->time > kMaxTime) {
+  if (scan->time < 0. || scan->time > kMaxLogTime) {
     return reader.Error("the time is no time");
   }
   return absl::OkStatus();

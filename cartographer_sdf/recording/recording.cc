@@ -56,7 +56,7 @@ std::vector<MotionSample> MotionBetween(const LaserScan& first,
   return samples;
 }
 
-std::vector<double> DrivenDistances(const Recording& recording) {
+std::vector<double> MetersDriven(const Recording& recording) {
   std::vector<double> distances;
   double sum = 0.;
   for (size_t i = 0; i < recording.scans.size(); ++i) {

@@ -58,7 +58,7 @@ struct MotionSample {
                                                       const LaserScan& second);
 
 // The length of the odometry's path [m] until each scan.
-[[nodiscard]] std::vector<double> DrivenDistances(const Recording& recording);
+[[nodiscard]] std::vector<double> MetersDriven(const Recording& recording);
 
 }  // namespace cartographer_sdf
 

@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/report/text.h"
 
 namespace cartographer_sdf {
@@ -20,7 +21,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-constexpr int64_t kTicksPerSecond = 10000000;
 constexpr int64_t kSecondsFromYearOneTo1970 = 62135596800;
 constexpr int64_t kSecondsFromYearOneTo10000 = 315537897600;
 

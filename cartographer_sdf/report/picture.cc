@@ -16,7 +16,7 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr int kMaxSize = 16384;
+constexpr int kMaxPictureSide = 16384;
 // Corridors of maps reach hundreds of metres; more is no pair of submaps.
 constexpr double kMaxExtentMeters = 2000.;
 
@@ -70,8 +70,8 @@ double RoundStep(const double step) {
 
 Picture::Picture(const int width, const int height, const Color& background)
     : context_(nullptr, &cairo_destroy) {
-  CHECK(width >= 1 && width <= kMaxSize) << width;
-  CHECK(height >= 1 && height <= kMaxSize) << height;
+  CHECK(width >= 1 && width <= kMaxPictureSide) << width;
+  CHECK(height >= 1 && height <= kMaxPictureSide) << height;
   cairo_surface_t* const surface =
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
   context_.reset(cairo_create(surface));

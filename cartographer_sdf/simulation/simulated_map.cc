@@ -10,16 +10,15 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/geometry/number_range.h"
 #include "cartographer_sdf/grid/scan_grid.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/simulation/random_numbers.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// 2001-09-09 01:46:40 UTC, a billion seconds after 1970, in ticks of 100 ns
-// since the year 1, which is 719162 days earlier.
-constexpr int64_t kTicksPerSecond = 10'000'000;
+// 2001-09-09 01:46:40 UTC, a billion seconds after 1970.
 constexpr int64_t kStartTime =
-    (719'162LL * 24 * 3600 + 1'000'000'000LL) * kTicksPerSecond;
+    kUnixEpochTicks + 1'000'000'000LL * kTicksPerSecond;
 
 // A scan becomes a node when the robot has moved or turned this much since the
 // last one [m, rad].

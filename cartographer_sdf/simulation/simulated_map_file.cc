@@ -13,6 +13,7 @@
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 #include "cartographer_sdf/simulation/simulated_map.h"
 #include "cartographer_sdf/simulation/truth.h"
@@ -22,10 +23,6 @@ namespace {
 
 constexpr int kTrajectory = 0;
 constexpr int kFormatVersion = 2;
-
-// Of the host's 2D defaults, TRAJECTORY_BUILDER and POSE_GRAPH.
-constexpr double kIntraTranslationWeight = 5e2;
-constexpr double kIntraRotationWeight = 1.6e3;
 
 // Of the host's SensorId: RANGE and ODOMETRY.
 constexpr int kRangeSensor = 0;

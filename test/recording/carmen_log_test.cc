@@ -65,7 +65,7 @@ TEST_F(CarmenLogTest, ReadsScansAndPassesOverOtherLines) {
   // Not the pose of the laser, which comes before it.
   EXPECT_EQ(scan.T_odometry_robot.translation(), Eigen::Vector2d(1., 2.));
   EXPECT_EQ(scan.T_odometry_robot.rotation(), 0.5);
-  EXPECT_THAT(DrivenDistances(*recording), ElementsAre(0., 1., 4.));
+  EXPECT_THAT(MetersDriven(*recording), ElementsAre(0., 1., 4.));
 }
 
 TEST_F(CarmenLogTest, ReadsCompressedFiles) {

@@ -47,10 +47,10 @@ TEST(MotionTest, IsDenseInLongIntervals) {
 
 TEST(MotionTest, MeasuresThePath) {
   Recording recording;
-  EXPECT_THAT(DrivenDistances(recording), IsEmpty());
+  EXPECT_THAT(MetersDriven(recording), IsEmpty());
   recording.scans = {Scan(0., {}), Scan(1., {3., 4., 1.}),
                      Scan(2., {3., 3., 1.})};
-  EXPECT_THAT(DrivenDistances(recording), ElementsAre(0., 5., 6.));
+  EXPECT_THAT(MetersDriven(recording), ElementsAre(0., 5., 6.));
 }
 
 TEST(MotionTest, CutsByTime) {
