@@ -23,7 +23,7 @@
 //
 // Events announced later are behind constraints that were added earlier,
 // provided that the caller holds one mutex both to announce and to add
-// constraints. Thread-compatible.
+// constraints.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_INJECTION_GATE_H_
 #define CARTOGRAPHER_SDF_LIVE_INJECTION_GATE_H_
