@@ -13,8 +13,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// Whether registration leaves the claimed pose where the grouping of
-// constraints would still call it the same.
+// Measures whether registration keeps the claimed pose within the tolerance of
+// the grouping of constraints.
 void MeasureShift(const GroupingOptions& options, const SurfaceModel& query,
                   const Rigid2& claimed, const Rigid2& registered,
                   ClaimEvidence* const claim) {
@@ -94,7 +94,7 @@ std::vector<AuditedGroup> ExamineGroups(
   return audited;
 }
 
-// By what the pair looks like.
+// Judges the pair by its appearance.
 AuditVerdict JudgeLooks(const AuditOptions& options,
                         const ClaimEvidence& claim) {
   if (claim.evidence.ContradictionRatio() > options.max_contradiction_ratio) {
@@ -108,7 +108,7 @@ AuditVerdict JudgeLooks(const AuditOptions& options,
 }
 
 PairPose ToPair(const AuditedGroup& group) {
-  // What does not look right has zero weight.
+  // An unlikely group has zero weight.
   const double score = group.verdict == AuditVerdict::kConfirmed
                            ? group.claim.score
                            : std::min(group.claim.score, 0.);
@@ -116,8 +116,8 @@ PairPose ToPair(const AuditedGroup& group) {
           group.claim.T_reference_query, score};
 }
 
-// Groups that look right fall where cycles speak against them, and others rise
-// where cycles speak for them, except against free space.
+// Likely groups become doubtful if cycles contradict them; others are confirmed
+// if cycles support them, unless free space contradicts them.
 void JudgeCycles(const ConsistencyOptions& consistency,
                  const std::map<SubmapId, OdometryPose>& odometry,
                  std::vector<AuditedGroup>* const groups) {
@@ -163,7 +163,8 @@ void MeasureErrors(const PoseGraph& constraints_of, const PoseGraph& poses,
   }
 }
 
-// Doubts what the map contradicts most; false where there is nothing.
+// Marks the constraints that the map contradicts most as doubtful; false if
+// there are none.
 bool DoubtOutliers(const OutlierRejectionOptions& options,
                    std::vector<AuditedConstraint>* const constraints) {
   std::vector<std::optional<ConstraintError>> errors;
@@ -179,7 +180,7 @@ bool DoubtOutliers(const OutlierRejectionOptions& options,
   return !outliers.empty();
 }
 
-// Doubtful ones that the map agrees with, which is made without them.
+// Keeps doubtful constraints that agree with the map made without them.
 bool Rehabilitate(const AuditOptions& options,
                   std::vector<AuditedConstraint>* const constraints) {
   bool any = false;
@@ -222,7 +223,7 @@ std::vector<AuditedConstraint> ListConstraints(
   return constraints;
 }
 
-// Holds the constraints against the map that the undoubted ones make.
+// Tests the constraints against the map made without the doubtful ones.
 void JudgeByMap(const AuditOptions& options,
                 const std::set<int>& frozen_trajectories,
                 const ProgressCallback& on_progress, Audit* const audit) {
@@ -232,7 +233,8 @@ void JudgeByMap(const AuditOptions& options,
   const int num_rounds = options.outlier_rejection.max_num_rounds + 2;
   int round = 0;
   const auto optimize = [&] {
-    // From the given poses each time: what was dropped leaves no trace.
+    // Starts from the given poses each time, so that dropped constraints have
+    // no effect.
     audit->pose_graph = WithoutDoubtful(before, *constraints);
     audit->optimizations.push_back(
         Optimize(audit->optimization, frozen_trajectories, &audit->pose_graph));

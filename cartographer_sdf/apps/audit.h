@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Are the loop closures of a saved map right? Every inter-submap constraint is
-// held against what the submaps look like at its own pose, against the cycles
-// that it forms with the others, and against the map that the undoubted ones
-// make. None is believed because it is there: the map's own poses, which wrong
-// constraints have bent, take no part.
+// Checks the loop closures of a saved map. Every inter-submap constraint is
+// tested against the submaps at its own pose, against the cycles that it forms
+// with the others, and against the map that results from the constraints that
+// are not doubtful. No constraint is trusted in advance, and the map's own
+// poses, which wrong constraints have distorted, are not used.
 //
 //   audit = AuditMap(options, audit_options, path, {}, executor);
 //   for (const AuditedGroup& group : audit->groups) ...
@@ -31,62 +31,63 @@ namespace cartographer_sdf {
 
 struct AuditOptions {
   GroupingOptions grouping;
-  // Constraints of a pair whose walls contradict more are doubtful: the worse
-  // of both directions, in the registered pose.
+  // Constraints of a pair with a larger contradiction ratio, the worse of both
+  // directions in the registered pose, are doubtful.
   double max_contradiction_ratio = 0.1;
-  // A pose must be better than any other of its pair by so much, else it is
+  // Least lead over any other pose of the pair; with less the pose is
   // ambiguous; log-odds.
   double min_margin = 0.;
-  // The least score of what looks right; log-odds.
+  // Least score of a likely pose; log-odds.
   double min_score = 0.;
-  // A doubtful constraint stays where the map that is made without any of them
-  // agrees with it to this [m], [rad].
+  // A doubtful constraint is kept if the map optimised without any doubtful
+  // ones agrees with it to within this [m], [rad].
   double max_agreeing_translation_meters = 0.3;
   double max_agreeing_rotation = 0.1;
-  // What that map contradicts is doubtful, too. Wider than for closures that
-  // close_loops adds: here right ones of others are at stake.
+  // Constraints that this map contradicts are doubtful too. Looser than for
+  // closures that close_loops adds: here correct constraints of the input are
+  // at stake.
   OutlierRejectionOptions outlier_rejection = {0.5, 0.1, 10};
 };
 [[nodiscard]] std::string Validate(const AuditOptions& options);
 
 enum class AuditVerdict {
   // Kept.
-  kConfirmed,      // looks right, and nothing speaks against it
-  kAgreesWithMap,  // not certain by itself, but where the map has it anyway
-  kUnchecked,      // relates no two submaps that have walls
+  kConfirmed,      // likely, and nothing contradicts it
+  kAgreesWithMap,  // uncertain by itself, but the map agrees
+  kUnchecked,      // does not relate two submaps with walls
   // Doubtful.
   kContradicted,       // walls of one stand in free space of the other
   kAmbiguous,          // another pose of the pair is as good
-  kUnlikely,           // too little agrees
-  kOutvoted,           // weightier constraints contradict it, in cycles
-  kUnsupported,        // no other supports it, and it is not certain alone
-  kContradictedByMap,  // the map made of the others has it elsewhere
+  kUnlikely,           // too little agreement
+  kOutvoted,           // cycles with stronger constraints contradict it
+  kUnsupported,        // no support from others, and uncertain alone
+  kContradictedByMap,  // the map made of the others disagrees
 };
 // "confirmed", ...
 [[nodiscard]] const char* AuditVerdictName(AuditVerdict verdict);
 [[nodiscard]] bool IsDoubtful(AuditVerdict verdict);
 
-// What the walls and free space of two submaps say of a pose that a constraint
-// claims.
+// Evidence from the walls and free space of two submaps for the pose that a
+// constraint claims.
 struct ClaimEvidence {
-  // The claimed pose, registered; as claimed where the walls do not hold it
+  // The claimed pose after registration; as claimed if the walls do not hold it
   // near there.
   Rigid2 T_reference_query;
-  // How far registration moves the centroid of the query [m], [rad]; none where
-  // the walls fix no pose.
+  // Motion of the query's centroid by registration [m], [rad]; none where the
+  // walls do not determine a pose.
   std::optional<double> shift;
   std::optional<double> turn;
   bool is_held = false;
   PairEvidence evidence;
-  // Lead over the best distinct pose, as VerifiedPose::margin.
+  // Lead over the best distinct pose, as in VerifiedPose::margin.
   double margin = 0.;
-  double score = 0.;  // log-odds of being right, as verification scores matches
+  double score = 0.;  // log-odds of being correct, as for matches
 };
 
 struct AuditedConstraint {
   size_t constraint;  // index in PoseGraph::constraints
   AuditVerdict verdict;
-  // In the map as it was, and in the map made without doubtful constraints.
+  // Errors in the input map, and in the map made without doubtful constraints.
   ConstraintError error_before;
   ConstraintError error_after;
 };
@@ -94,11 +95,11 @@ struct AuditedConstraint {
 struct AuditedGroup {
   ConstraintGroup group;
   ClaimEvidence claim;
-  // What others say of it in cycles: their scores. It is among the others where
-  // it is selected.
+  // Agreement of other groups with it in cycles: their scores. It is itself
+  // among them if selected.
   SelectionResult cycles;
-  // By what it looks like and by the cycles; single constraints can fare
-  // otherwise, by the map.
+  // Based on appearance and cycles; the map may change the verdict of single
+  // constraints.
   AuditVerdict verdict;
 };
 
@@ -108,16 +109,17 @@ struct Audit {
   // All inter-submap constraints, in their order.
   std::vector<AuditedConstraint> constraints;
   size_t num_doubtful = 0;
-  // Without the doubtful ones, optimised; as it was where there are none.
+  // Optimised without the doubtful constraints; the input graph if there are
+  // none.
   PoseGraph pose_graph;
   OptimizationOptions optimization;  // in force, odometry weights as inferred
   std::vector<OptimizationSummary> optimizations;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Fails where the file can't be read. Of the options of loop closing those of
-// places, matching, consistency and optimisation apply. The same
-// for any number of threads.
+// Fails if the file cannot be read. Of the loop closing options, those for
+// places, matching, consistency and optimisation apply. The result does not
+// depend on the number of threads.
 [[nodiscard]] absl::StatusOr<Audit> AuditMap(
     const LoopClosingOptions& loop_closing, const AuditOptions& options,
     const std::string& path, const std::set<int>& frozen_trajectories,

@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The main job: finds the loop closures of a saved map by what its submaps look
-// like, and optimises the pose graph with a mutually consistent set of them.
+// The main task: finds the loop closures of a saved map by the appearance of
+// its submaps, and optimises the pose graph with a mutually consistent set of
+// them.
 
 #ifndef CARTOGRAPHER_SDF_APPS_CLOSE_LOOPS_H_
 #define CARTOGRAPHER_SDF_APPS_CLOSE_LOOPS_H_
@@ -32,15 +33,15 @@ struct LoopClosingOptions {
 struct LoopClosingResult {
   MapState state;  // as read
   size_t num_places = 0;
-  size_t num_matches = 0;  // poses that were verified, accepted or not
+  size_t num_matches = 0;  // verified poses, accepted or not
   ClosedGraph closed;
   // The options in force, odometry weights as inferred.
   OptimizationOptions optimization;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Fails where the file can't be read. Frozen trajectories stay where they are.
-// The recognition's method is kSdf.
+// Fails if the file cannot be read. Frozen trajectories stay fixed. The
+// recognition's method must be kSdf.
 [[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
     const LoopClosingOptions& options, const std::string& path,
     const std::set<int>& frozen_trajectories, const Executor& executor,

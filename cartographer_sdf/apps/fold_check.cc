@@ -13,7 +13,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Two submaps that are laid over each other.
+// Two submaps that overlap in the graph.
 struct Overlap {
   std::optional<Match> contradiction;
 };
@@ -39,7 +39,7 @@ std::vector<OverlappingPair> ListPairs(
   return pairs;
 }
 
-// None where the graph does not lay the two over each other.
+// Returns none if the two do not overlap in the graph.
 std::optional<Overlap> FindOverlap(const FoldCheckOptions& options,
                                    const VerificationOptions& verification,
                                    const OverlappingPair& pair,
@@ -87,7 +87,7 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
             joined.SessionOf(pair.query->id)) {
       return;
     }
-    // What contradicted itself before is not the merge's fault.
+    // The merge did not cause contradictions that existed before it.
     const std::optional<Overlap> before = check(pair, joined.state.pose_graph);
     if (before && before->contradiction) pair.overlap->contradiction.reset();
   });

@@ -15,7 +15,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of each index, the lowest one that it is joined with.
+// For each index, the lowest one that it is joined with.
 std::vector<size_t> SingleGroups(const size_t size) {
   std::vector<size_t> groups(size);
   std::iota(groups.begin(), groups.end(), size_t{0});
@@ -29,7 +29,7 @@ void JoinGroups(const size_t a, const size_t b,
                std::min(group_a, group_b));
 }
 
-// The first of equally large ones.
+// On ties, returns the first.
 size_t LargestGroup(const std::vector<size_t>& groups) {
   std::map<size_t, int> sizes;
   for (const size_t group : groups) ++sizes[group];
@@ -43,8 +43,8 @@ bool IsCertain(const SessionLink& link) {
   return link.localization.verdict == LocalizationVerdict::kLocalized;
 }
 
-// (first of the group <- session) for the sessions of a group, along the most
-// certain links.
+// Returns (first of the group <- session) for the sessions of a group, along
+// the most certain links.
 std::map<size_t, Rigid2> PlaceSessions(const size_t first,
                                        const std::vector<SessionLink>& links) {
   std::map<size_t, Rigid2> placed = {{first, Rigid2()}};
@@ -83,7 +83,7 @@ absl::Status CheckPaths(const std::vector<std::string>& paths) {
   return absl::OkStatus();
 }
 
-// Of the pair that is most alike.
+// Describes the most similar pair.
 std::string DescribeStrangers(const MergingResult& result) {
   const SessionLink& most_alike =
       *std::max_element(result.links.begin(), result.links.end(),
@@ -97,9 +97,9 @@ std::string DescribeStrangers(const MergingResult& result) {
                       most_alike.localization.reason);
 }
 
-// Accepted matches of the joined map: of those between two sessions the ones
-// that vote for where one lies in the other, and where `also_within` those
-// within each.
+// Returns the accepted matches of the joined map: between sessions those that
+// vote for the placement, and with `also_within` also those within each
+// session.
 std::vector<Match> CollectMatches(const LoopClosingOptions& stages,
                                   const std::vector<const Session*>& sessions,
                                   const JoinedSessions& joined,
@@ -141,8 +141,8 @@ std::vector<Match> CollectMatches(const LoopClosingOptions& stages,
   return matches;
 }
 
-// Why the closures in the graph do not hold all joined sessions together; else
-// empty.
+// Returns why the closures in the graph do not connect all joined sessions, or
+// an empty string.
 std::string DescribeSplit(const JoinedSessions& joined,
                           const std::vector<Closure>& closures,
                           const std::vector<const Session*>& sessions) {
@@ -163,7 +163,7 @@ std::string DescribeSplit(const JoinedSessions& joined,
   return "";
 }
 
-// Joins the sessions that `placed` lays somewhere and closes the joined graph.
+// Joins the sessions in `placed` and closes loops in the joined graph.
 void JoinAndClose(const FoldCheckOptions& options,
                   const LoopClosingOptions& stages,
                   const std::vector<const Session*>& sessions,
@@ -202,8 +202,8 @@ void JoinAndClose(const FoldCheckOptions& options,
   result->state = std::move(joined.state);
 }
 
-// Reads all sessions. Only the first map can stay where it is; said as soon as
-// it is known.
+// Reads all sessions. Only the first map can be frozen; fails as soon as
+// another one is.
 absl::StatusOr<std::vector<Session>> ReadSessions(
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
     const std::vector<std::string>& paths,
@@ -235,7 +235,7 @@ std::vector<SessionLink> LinkSessions(LocalizationOptions localization,
                                       const std::vector<Session>& sessions,
                                       const Executor& executor,
                                       StageClock* const clock) {
-  // Every match is of use here.
+  // Use every match.
   localization.num_first_places = std::numeric_limits<int>::max();
   localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
   std::vector<SessionLink> links;
@@ -254,7 +254,7 @@ std::vector<SessionLink> LinkSessions(LocalizationOptions localization,
   return links;
 }
 
-// Why the sessions that are certain of each other make no map; else empty.
+// Returns why the connected sessions cannot be merged, or an empty string.
 std::string FindRefusal(const MergingResult& result,
                         const std::map<size_t, Rigid2>& placed,
                         const bool has_frozen_trajectories) {

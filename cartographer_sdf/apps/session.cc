@@ -11,8 +11,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// Adds the places that were made of scans as submaps of the session. A submap
-// that is in the pose graph without a record of its own is not replaced.
+// Adds the places made of scans as submaps of the session. A submap that is in
+// the pose graph without a record of its own is not replaced.
 void AddScanPlaces(ScanMap scans, Session* const session) {
   DescribedMap& map = session->map;
   PoseGraph& graph = map.state.pose_graph;
@@ -58,7 +58,7 @@ bool IsIdentity(const Rigid2& pose) {
   return pose.translation().isZero(0.) && pose.rotation() == 0.;
 }
 
-// The places of a session and what belongs to them, under their new ids.
+// Adds the places of a session and their data under the new ids.
 void AddPlaces(const Session& session, const MapPart& part,
                JoinedSessions* const joined) {
   for (const auto& [id, place] : session.map.places) {
@@ -150,7 +150,7 @@ JoinedSessions JoinSessions(const ClosingOptions& options,
         options.infer_odometry_weights
             ? InferOdometryWeights(options.optimization, state.pose_graph)
             : std::nullopt;
-    // The first stays to the last bit.
+    // The first session stays bit for bit.
     if (!IsIdentity(pose)) Move(pose, &state.pose_graph);
     AppendMap(part, state, &placed);
     AddPlaces(*sessions[k], part, &joined);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A saved map, or a stretch of one, that is to be localized or merged.
+// A saved map, or a stretch of one, to be localized or merged.
 
 #ifndef CARTOGRAPHER_SDF_APPS_SESSION_H_
 #define CARTOGRAPHER_SDF_APPS_SESSION_H_
@@ -27,19 +27,19 @@ namespace cartographer_sdf {
 struct Session {
   std::string path;
   DescribedMap map;
-  // Grids of the submaps that are not in the file but were made of scans.
+  // Grids of the submaps that are not in the file but made of scans.
   std::map<SubmapId, OccupancyGrid> scan_grids;
 };
 
-// All submaps that a file holds, and places made of the scans of trajectories
-// of which it holds none; with a window, places made of the scans in it alone.
-// See scan_places.h. Fails as ReadMap does.
+// Describes all submaps in a file, and places made of the scans of trajectories
+// without submaps; with a window, only places made of the scans in it. See
+// scan_places.h. Fails as ReadMap does.
 [[nodiscard]] absl::StatusOr<Session> DescribeSession(
     const LoopClosingOptions& options, const ScanPlaceOptions& scan_places,
     const std::string& path, const std::optional<TimeWindow>& window,
     const Executor& executor, const ProgressCallback& on_progress = {});
 
-// Where the query lies in the map, by the matches of its places with all places
+// Localizes the query in the map by the matches of its places with all places
 // of the map, or with those that an index proposes (recognition.use_retrieval).
 [[nodiscard]] Localization LocalizeIn(const LocalizationOptions& options,
                                       const LoopClosingOptions& stages,
@@ -48,12 +48,12 @@ struct Session {
                                       const Executor& executor,
                                       const StageCallback& on_stage = {});
 
-// Several sessions as one map, under new trajectory numbers.
+// Several sessions joined into one map, under new trajectory numbers.
 struct JoinedSessions {
-  std::map<size_t, MapPart> parts;  // by session, those that were joined
-  // All ids are the new ones.
+  std::map<size_t, MapPart> parts;  // the joined sessions, by index
+  // All ids are new.
   MapState state;    // as read
-  PoseGraph placed;  // with the poses where the sessions were laid
+  PoseGraph placed;  // with the sessions at their placements
   std::map<SubmapId, Place> places;
   std::map<SubmapId, OdometryPose> odometry;
   std::map<NodeId, PointCloud2> point_clouds;
@@ -65,13 +65,13 @@ struct JoinedSessions {
   }
 };
 
-// Joins the sessions that `T_merged_session` lays somewhere; each is weighed by
-// the odometry weights that it shows, where they are to be inferred.
+// Joins the sessions in `T_merged_session`; if odometry weights are to be
+// inferred, each session uses its own.
 [[nodiscard]] JoinedSessions JoinSessions(
     const ClosingOptions& options, const std::vector<const Session*>& sessions,
     const std::map<size_t, Rigid2>& T_merged_session);
 
-// Submaps that are in no file can't be written.
+// Removes the submaps that are in no file and hence cannot be written.
 void RemoveScanSubmaps(const JoinedSessions& joined, PoseGraph* pose_graph);
 
 }  // namespace cartographer_sdf

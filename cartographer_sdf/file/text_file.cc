@@ -19,7 +19,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of a field, as an error shows it.
+// A field as error messages show it.
 std::string Quoted(const absl::string_view field) {
   constexpr size_t kMaxLength = 40;
   return absl::StrCat("\"", absl::CHexEscape(field.substr(0, kMaxLength)),
@@ -34,7 +34,7 @@ std::vector<std::string> Fields(const std::string& line) {
   return fields;
 }
 
-// For each column asked for, its position in the header.
+// Returns the position in the header of each requested column.
 absl::StatusOr<std::vector<size_t>> FindColumns(
     const std::string& path, const std::vector<std::string>& header,
     const std::vector<CsvColumn>& columns) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Tables in text files: lines of fields. Any bytes give a table or one clear
-// sentence that names the file and, where there is one, the line.
+// Reads tables from text files: lines of fields. Any input yields a table or a
+// one-sentence error that names the file and, where there is one, the line.
 
 #ifndef CARTOGRAPHER_SDF_FILE_TEXT_FILE_H_
 #define CARTOGRAPHER_SDF_FILE_TEXT_FILE_H_
@@ -21,15 +21,15 @@ struct TextLine {
   std::string text;
 };
 
-// The lines that are not blank, without surrounding white space.
+// Returns the non-blank lines, with surrounding white space removed.
 [[nodiscard]] absl::StatusOr<std::vector<TextLine>> ReadLines(
     const std::string& path);
 
-// "path:line: problem"
+// Returns an error with the message "path:line: problem".
 [[nodiscard]] absl::Status LineError(const std::string& path, int line,
                                      const std::string& problem);
 
-// A finite number, or an error of that line.
+// Parses a finite number; an error names the line.
 [[nodiscard]] absl::StatusOr<double> ParseNumber(const std::string& path,
                                                  int line,
                                                  const std::string& field);
@@ -42,7 +42,7 @@ struct CsvColumn {
 
 struct CsvRow {
   int line = 0;
-  // In the order of the columns asked for.
+  // In the order of the requested columns.
   std::vector<std::variant<int, double, std::string>> fields;
 
   [[nodiscard]] int Integer(int column) const {
@@ -56,8 +56,9 @@ struct CsvRow {
   }
 };
 
-// A file with a header line; columns are found by name, others are ignored.
-// Numbers are finite. There are no quotes: a field cannot hold a comma.
+// Reads a file with a header line. Columns are found by name; others are
+// ignored. Numbers must be finite. Quoting is not supported: a field cannot
+// contain a comma.
 [[nodiscard]] absl::StatusOr<std::vector<CsvRow>> ReadCsv(
     const std::string& path, const std::vector<CsvColumn>& columns);
 

@@ -10,8 +10,8 @@
 
 namespace cartographer_sdf {
 
-// Writes a temporary file beside `path` and renames it: at any time there is
-// the old file or the new one, never a part. Errors name the path.
+// Writes a temporary file beside `path` and renames it, so that `path` always
+// holds the complete old file or the complete new one. Errors name the path.
 [[nodiscard]] absl::Status WriteWholeFile(const std::string& path,
                                           const std::string& content);
 

@@ -15,11 +15,11 @@
 namespace cartographer_sdf {
 namespace {
 
-// At most so many submaps of the map are held against the nodes of a trajectory
-// that was localised.
+// Maximum number of submaps of the map that are matched with the nodes of a
+// localised trajectory.
 constexpr size_t kMaxLocalizationClosures = 3;
 
-// The host has cut beams without an echo to the length that it believes.
+// The host has cut beams without a return to its configured length.
 ScanGridOptions GridOptions(const LiveLocalizationOptions& options) {
   ScanGridOptions grid;
   grid.resolution = options.resolution_meters;

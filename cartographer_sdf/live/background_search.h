@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the worker does: it describes, remembers and recognises places, gives
-// closures their constraints, and localises trajectories in the places of a
-// map. Knows neither locks nor the host's pose graph.
+// The work of the worker: describes, remembers and recognises places, generates
+// the constraints of closures, and localises trajectories among the places of a
+// map. Independent of locks and of the host's pose graph.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
 #define CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
@@ -24,26 +24,26 @@
 
 namespace cartographer_sdf {
 
-// The index of a growing submap of ours, that the host does not know.
+// The index of our growing submap, which the host does not know.
 constexpr int kGrowingSubmapIndex = -1;
 
 using NodeData =
     std::shared_ptr<const cartographer::mapping::TrajectoryNode::Data>;
 
-// A node of a submap whose scan will be held against other submaps.
+// A node of a submap whose scan will be matched with other submaps.
 struct SubmapNode {
   NodeId id;
   Rigid2 T_submap_node;
   NodeData data;
 };
 
-// A scan for localising a trajectory, and the host's node that it belongs to.
+// A scan for localising a trajectory, and the host's node it belongs to.
 struct NodeWithScan {
   NodeData data;
   DrivenScan scan;
 };
 
-// Evenly spaced ones, as many as get constraints.
+// Returns evenly spaced nodes, as many as get constraints.
 [[nodiscard]] std::vector<SubmapNode> ThinOut(
     const ConstraintOptions& options, const std::vector<SubmapNode>& nodes);
 
@@ -55,8 +55,8 @@ class BackgroundSearch {
   // None where the grid shows no walls.
   [[nodiscard]] std::optional<Place> Describe(const SubmapId& id,
                                               const OccupancyGrid& grid) const;
-  // Matches of a remembered place, the query, with the others that share no
-  // scans with it. `odometry` has all of them.
+  // Matches a remembered place, the query, with the others that share no scans
+  // with it. `odometry` must contain all of them.
   [[nodiscard]] PlaceRecognizer::Recognition Recognize(
       const SubmapId& query,
       const std::map<SubmapId, OdometryPose>& odometry) const;
@@ -66,29 +66,31 @@ class BackgroundSearch {
     return recognizer_.places();
   }
 
-  // Gives the selected closures their constraints (closing/pipeline.h); both
-  // places of each are remembered. Submaps without nodes get none of their own.
+  // Generates the constraints of the selected closures (closing/pipeline.h);
+  // both places of each must be remembered. The nodes of submaps that are not
+  // in `nodes` get none.
   void GenerateConstraints(
       const std::map<SubmapId, std::vector<SubmapNode>>& nodes,
       std::vector<Closure>* closures) const;
 
-  // Localising a trajectory. Starts again from nothing:
+  // Starts localising a trajectory, or restarts from scratch.
   void StartLocalizing(int trajectory_id);
   void StopLocalizing(int trajectory_id);
   void AddScans(int trajectory_id, std::vector<NodeWithScan> nodes);
   struct Query {
     Localization localization;  // of `T_local_query` as the query's map frame
-    // The frame of the query in the trajectory's local frame.
+    // The query frame in the trajectory's local frame.
     Rigid2 T_local_query;
-    // Queries in a row, this one included, that were localised at one place.
+    // Number of consecutive queries, including this one, that were localised at
+    // the same place.
     int num_certain = 0;
     size_t num_candidates = 0;
-    // Once enough queries agree: the best matches of the answer as closures
-    // with constraints of the trajectory's nodes.
+    // Once enough queries agree: the best matches as closures, with constraints
+    // of the trajectory's nodes.
     std::vector<Closure> closures;
   };
-  // In the submaps of the layout, those that are remembered. The trajectory has
-  // scans.
+  // Localises the trajectory among the remembered submaps of the layout. The
+  // trajectory must have scans.
   [[nodiscard]] Query Localize(int trajectory_id, const MapLayout& map);
 
  private:
@@ -96,7 +98,7 @@ class BackgroundSearch {
     GrowingGrid grid;
     // One for each scan of the grid, in their order.
     std::deque<NodeData> nodes;
-    std::optional<Rigid2> T_map_local;  // by the latest certain query
+    std::optional<Rigid2> T_map_local;  // of the latest certain query
     int num_certain = 0;
   };
   void CountCertain(const Rigid2& T_local_query, LocalSearch* search,

@@ -109,7 +109,7 @@ PoseGraph ConstraintsFromHost(const std::vector<HostConstraint>& constraints) {
 std::optional<OccupancyGrid> CopyGrid(const mapping::Submap& submap) {
   const auto* const planar = dynamic_cast<const mapping::Submap2D*>(&submap);
   if (planar == nullptr || planar->grid() == nullptr) return std::nullopt;
-  // Through the serialized form, whose conversion knows all kinds of grids.
+  // Uses the serialized form, whose conversion supports all kinds of grids.
   proto::Grid2D copy;
   if (!copy.ParseFromString(planar->grid()
                                 ->ComputeCroppedGrid()

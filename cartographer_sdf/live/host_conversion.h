@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The host's types to ours and back: the only place that knows how the host
+// Converts the host's types to ours and back. Only this code knows how the host
 // frames poses and constraints.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_HOST_CONVERSION_H_
@@ -36,7 +36,7 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
 [[nodiscard]] cartographer::mapping::SubmapId ToHost(const SubmapId& id);
 [[nodiscard]] cartographer::mapping::NodeId ToHost(const NodeId& id);
 
-// Of the gravity-aligned node: (local <- node).
+// Pose of the gravity-aligned node: (local <- node).
 [[nodiscard]] Rigid2 LocalNodePose(
     const cartographer::mapping::TrajectoryNode::Data& node);
 // The scan that the host matches, in the gravity-aligned node frame.
@@ -50,20 +50,20 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
     const cartographer::mapping::TrajectoryNode::Data& node,
     const cartographer::sensor::RangeData& range_data, double distance_driven);
 
-// As AddSerializedConstraints takes it: the host wants the pose of the tracking
-// frame, and takes the gravity alignment off again.
+// Converts a constraint for AddSerializedConstraints: the host expects the pose
+// of the tracking frame, and removes the gravity alignment again.
 [[nodiscard]] HostConstraint ToHost(
     const Constraint& constraint, const Eigen::Quaterniond& gravity_alignment);
 
-// A pose graph of constraints alone, those of the host's. Their poses are of
-// the tracking frames, without z, roll and pitch: good for which submap holds
-// which node, not for optimisation.
+// Returns a pose graph that contains only the host's constraints. Their poses
+// are those of the tracking frames, without z, roll and pitch: sufficient to
+// tell which submap contains which node, not for optimisation.
 [[nodiscard]] PoseGraph ConstraintsFromHost(
     const std::vector<HostConstraint>& constraints);
 
-// A copy of the submap's grid, cropped to what is known. The submap must not
-// change meanwhile. None where it is not a planar one, has no grid, or one that
-// is broken.
+// Copies the submap's grid, cropped to the known cells. The submap must not
+// change meanwhile. None if it is not planar, or its grid is missing or
+// invalid.
 [[nodiscard]] std::optional<OccupancyGrid> CopyGrid(
     const cartographer::mapping::Submap& submap);
 

@@ -26,8 +26,8 @@ bool InjectionGate::EnterRound(const int generation,
   newest_entered_ = std::max(newest_entered_, generation);
   const int64_t num_since_last_round = num_nodes_done - num_nodes_done_;
   num_nodes_done_ = std::max(num_nodes_done_, num_nodes_done);
-  // The last of them may have started this round, those before it did not. Of
-  // the time before the first round that was seen nothing is known.
+  // The last of these nodes may have started this round; those before it did
+  // not. Nothing is known about the time before the first observed round.
   if (has_entered_) {
     num_harmless_nodes_ =
         std::max(num_harmless_nodes_, num_since_last_round - 1);

@@ -1,30 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// When is it safe to add constraints to the host's pose graph?
+// Decides when it is safe to add constraints to the host's pose graph.
 //
-// The host puts them at the end of a queue of work, and aborts the process
-// where a submap or node of theirs is gone by the time they are reached.
-// Submaps and nodes go in one place only: in *rounds*, right after an
-// optimisation, by trimmers and by deletions. So constraints are safe if their
-// ids were there in a round, after all trimmers had their turn, and if no round
-// comes between that one and them: nothing that is ahead of them in the queue
-// may start one.
+// The host appends them to a work queue, and aborts the process if one of their
+// submaps or nodes is gone when it reaches them. Submaps and nodes are removed
+// only in *rounds*, right after an optimisation, by trimmers and by deletions.
+// So constraints are safe if their ids existed in a round after all trimmers
+// had run, and no round comes between that one and the constraints: nothing
+// ahead of them in the queue may start a round.
 //
-// A round is started by nodes, every so many; by the end of a trajectory; and
-// by a final optimisation. The gate knows of
-// - nodes: the host shows in a round how many are waiting in its queue. As so
-//   many nodes never started a round as were seen to go by between two rounds,
-//   less one, that many may wait, and no more;
-// - the others: they pass through our decorator, which announces them before it
-//   forwards them and afterwards adds a new hook, that is a trimmer of ours.
-//   Once a round calls that hook, all that was announced before has been
-//   reached, as the hook went through the same queue; and no trimmer has its
-//   turn after it, as it was the last to be added. Hooks are numbered by
-//   generation.
+// Rounds are started by nodes, one every fixed number of nodes; by the end of a
+// trajectory; and by a final optimisation. The gate accounts for
+// - nodes: in a round, the host shows how many are waiting in its queue. If n
+//   nodes passed between two rounds, n - 1 nodes never start a round, so at
+//   most that many may be waiting;
+// - the other events: they pass through our decorator, which announces them
+//   before forwarding them and afterwards adds a new hook, a trimmer of ours.
+//   Once a round calls that hook, everything announced before has been reached,
+//   since the hook went through the same queue; and no trimmer runs after it,
+//   since it was added last. Hooks are numbered by generation.
 //
-// Those announced later are behind constraints that were added before, provided
-// that the caller holds one mutex both to announce and to add constraints.
+// Events announced later are behind constraints that were added earlier,
+// provided that the caller holds one mutex both to announce and to add
+// constraints.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_INJECTION_GATE_H_
 #define CARTOGRAPHER_SDF_LIVE_INJECTION_GATE_H_
@@ -36,22 +35,23 @@ namespace cartographer_sdf {
 // Thread-compatible.
 class InjectionGate {
  public:
-  // Before something is forwarded that starts a round or adds a trimmer.
+  // Call before forwarding an event that starts a round or adds a trimmer.
   void Announce();
-  // After: the generation of the hook that the caller now has to add.
+  // Call afterwards; returns the generation of the hook that the caller must
+  // add.
   [[nodiscard]] int Settle();
   // Grows with each announcement.
   [[nodiscard]] int64_t num_announced() const { return num_announced_; }
-  // Announced, and not yet settled.
+  // Number of announced events that are not settled yet.
   [[nodiscard]] int num_unsettled() const { return num_unsettled_; }
 
-  // By a hook in a round: the nodes that have been worked on since the start,
-  // and those that are still in the queue. Whether constraints added now,
-  // before the mutex and the round end, are safe. Several hooks may be called
-  // in a round.
+  // Called by a hook in a round, with the number of nodes processed since the
+  // start and the number still in the queue. Returns whether constraints added
+  // now, before the mutex is released and the round ends, are safe. A round may
+  // call several hooks.
   [[nodiscard]] bool EnterRound(int generation, int64_t num_nodes_done,
                                 int64_t num_nodes_waiting);
-  // Hooks that have a successor may be taken away.
+  // Hooks with a called successor may be removed.
   [[nodiscard]] bool IsObsolete(int generation) const {
     return generation < newest_entered_;
   }
@@ -63,7 +63,7 @@ class InjectionGate {
   int newest_entered_ = 0;
   bool has_entered_ = false;
   int64_t num_nodes_done_ = 0;
-  // So many never start a round.
+  // This many nodes never start a round.
   int64_t num_harmless_nodes_ = 0;
 };
 

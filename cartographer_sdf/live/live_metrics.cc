@@ -15,7 +15,7 @@ namespace metrics = cartographer::metrics;
 constexpr double kMinSeconds = 0.001;
 constexpr double kMaxSeconds = 10.;
 
-// A counter for each of `keys`, in one family, told apart by a label.
+// Adds a counter for each of `keys` to one family, distinguished by a label.
 template <typename Key>
 void AddCounters(metrics::Family<metrics::Counter>* const family,
                  const std::string& label, const char* (*const name_of)(Key),
@@ -29,14 +29,13 @@ void AddCounters(metrics::Family<metrics::Counter>* const family,
 void RegisterOutcomes(metrics::FamilyFactory* const family_factory) {
   AddCounters(
       family_factory->NewCounterFamily("cartographer_sdf_matches",
-                                       "Poses that were verified, by verdict"),
+                                       "Verified poses, by verdict"),
       "verdict", &VerdictName,
       {Verdict::kAccepted, Verdict::kTooLittleOverlap, Verdict::kContradicted,
        Verdict::kUnlikely, Verdict::kDegenerate, Verdict::kAmbiguous},
       &TheMetrics().matches);
-  AddCounters(family_factory->NewCounterFamily(
-                  "cartographer_sdf_closures",
-                  "Accepted closures, by what became of them"),
+  AddCounters(family_factory->NewCounterFamily("cartographer_sdf_closures",
+                                               "Accepted closures, by status"),
               "status", &ClosureStatusName,
               {ClosureStatus::kUnsupported, ClosureStatus::kInconsistent,
                ClosureStatus::kScansDisagree, ClosureStatus::kReady,
@@ -44,9 +43,8 @@ void RegisterOutcomes(metrics::FamilyFactory* const family_factory) {
                ClosureStatus::kGone},
               &TheMetrics().closures);
   AddCounters(
-      family_factory->NewCounterFamily(
-          "cartographer_sdf_localizations",
-          "Queries for a trajectory in a map, by what they found"),
+      family_factory->NewCounterFamily("cartographer_sdf_localizations",
+                                       "Localization queries, by verdict"),
       "verdict", &LocalizationVerdictName,
       {LocalizationVerdict::kLocalized, LocalizationVerdict::kTooLittleSeen,
        LocalizationVerdict::kNothingAlike, LocalizationVerdict::kUncertain,
@@ -71,15 +69,14 @@ void RegisterMetrics(metrics::FamilyFactory* const family_factory) {
   const auto counter = [&](const char* const name, const char* const what) {
     return family_factory->NewCounterFamily(name, what)->Add({});
   };
-  all.submaps =
-      counter("cartographer_sdf_submaps", "Submaps that were described");
+  all.submaps = counter("cartographer_sdf_submaps", "Described submaps");
   all.queries = counter("cartographer_sdf_queries",
                         "Submaps and growing submaps that were searched for "
                         "among the others");
   all.candidates =
-      counter("cartographer_sdf_candidates", "Pairs that queries proposed");
+      counter("cartographer_sdf_candidates", "Pairs proposed by queries");
   all.constraints =
-      counter("cartographer_sdf_constraints", "Constraints that were injected");
+      counter("cartographer_sdf_constraints", "Injected constraints");
   const auto histogram = [&](const char* const name, const char* const what) {
     return family_factory
         ->NewHistogramFamily(
@@ -89,9 +86,8 @@ void RegisterMetrics(metrics::FamilyFactory* const family_factory) {
   };
   all.describe_seconds = histogram("cartographer_sdf_describe_seconds",
                                    "Time to describe a submap");
-  all.query_seconds =
-      histogram("cartographer_sdf_query_seconds",
-                "Time to search for one and to verify what is found");
+  all.query_seconds = histogram("cartographer_sdf_query_seconds",
+                                "Time of a query, including verification");
   RegisterOutcomes(family_factory);
 }
 

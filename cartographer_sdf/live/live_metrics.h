@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What is counted through the host's metrics, of all builders of the process
-// together.
+// Metrics reported through the host, summed over all builders of the process.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_LIVE_METRICS_H_
 #define CARTOGRAPHER_SDF_LIVE_LIVE_METRICS_H_
@@ -28,7 +27,7 @@ struct OutcomeCounters {
   }
 };
 
-// Described where they are registered, in live_metrics.cc.
+// Registered and described in live_metrics.cc.
 struct LiveMetrics {
   using Counter = cartographer::metrics::Counter;
   using Histogram = cartographer::metrics::Histogram;
@@ -45,7 +44,8 @@ struct LiveMetrics {
   OutcomeCounters<LocalizationVerdict> localizations;
 };
 
-// Those of the process, which count nothing before RegisterMetrics().
+// Returns the metrics of the process, which count nothing before
+// RegisterMetrics().
 [[nodiscard]] LiveMetrics& TheMetrics();
 
 }  // namespace cartographer_sdf

@@ -42,21 +42,22 @@ using SensorId = mapping::TrajectoryBuilderInterface::SensorId;
 constexpr char kRangeSensor[] = "range";
 constexpr char kImuSensor[] = "imu";
 constexpr char kOdometrySensor[] = "odom";
-// What an accelerometer at rest shows [m/s^2].
+// Reading of an accelerometer at rest [m/s^2].
 constexpr double kGravity = 9.8;
-// A final optimisation lets closures into the graph, the next acts on them.
+// One final optimisation lets closures into the graph, the next one acts on
+// them.
 constexpr int kMaxFinalOptimizations = 4;
 
 Time ToHostTime(const double unix_seconds) {
-  // Times in the year 2001 have no fraction finer than 1e-7 s in a double, and
-  // the host's ticks are so long.
+  // Times in the year 2001 have a resolution of about 1e-7 s in a double, the
+  // length of the host's ticks.
   return cartographer::common::FromUniversal(
       std::llround(unix_seconds * 1e7) +
       cartographer::common::kUtsEpochOffsetFromUnixEpochInSeconds * 10000000ll);
 }
 
-// Every beam, as the host wants to see those that hit nothing, too. A range
-// beyond max_range frees the first metres of its way.
+// Returns every beam, because the host also uses those without a return. A
+// range beyond max_range marks its first metres as free.
 sensor::TimedPointCloudData ToHostScan(const Recording& recording,
                                        const LaserScan& scan) {
   sensor::TimedPointCloudData data;
@@ -73,14 +74,14 @@ sensor::TimedPointCloudData ToHostScan(const Recording& recording,
   return data;
 }
 
-// The host prints how an optimisation goes that somebody waits for; standard
-// output is not its to use.
+// Silences the host, which prints the progress of synchronous optimisations to
+// standard output.
 struct SilentStandardOutput {
   SilentStandardOutput() { std::cout.setstate(std::ios::failbit); }
   ~SilentStandardOutput() { std::cout.clear(); }
 };
 
-// What the threads of one run share. CPU time is that of all threads [s].
+// Clock shared by the threads of a run. CPU time is that of all threads [s].
 struct Clock {
   const std::chrono::steady_clock::time_point begin =
       std::chrono::steady_clock::now();
@@ -108,7 +109,7 @@ class Run {
 
   absl::Status LoadMap() {
     if (!options_.map_path.has_value()) return absl::OkStatus();
-    // The host aborts on files that are not whole.
+    // The host aborts on invalid files.
     const absl::StatusOr<MapState> state = ReadMap(*options_.map_path);
     if (!state.ok()) return state.status();
     if (state->trajectories.empty()) {
@@ -121,13 +122,13 @@ class Run {
     return absl::OkStatus();
   }
 
-  // False where no node came of it.
+  // Returns false if no node was created.
   bool Drive(const std::function<void(double)>& on_progress) {
     std::set<SensorId> sensors = {
         {SensorId::SensorType::RANGE, kRangeSensor},
         {SensorId::SensorType::ODOMETRY, kOdometrySensor}};
     if (uses_imu_) sensors.insert({SensorId::SensorType::IMU, kImuSensor});
-    // Before the first scan can look at it.
+    // Must exist before the first scan reads it.
     clock_ = std::make_unique<Clock>();
     result_.trajectory_id = map_builder_->AddTrajectoryBuilder(
         sensors, options_.host.trajectory_builder,
@@ -236,7 +237,7 @@ class Run {
     AddSensorData(builder, kRangeSensor, host_scan);
   }
 
-  // The host works on a scan as soon as all sensors have reached its time,
+  // The host processes a scan as soon as all sensors have reached its time,
   // whichever comes last.
   template <typename SensorData>
   void AddSensorData(mapping::TrajectoryBuilderInterface* const builder,
@@ -246,7 +247,7 @@ class Run {
     result_.sensor_seconds.push_back(SecondsSince(begin));
   }
 
-  // On the sensor thread.
+  // Called on the sensor thread.
   void Inserted(
       const Time time, const transform::Rigid3d& local_pose,
       const mapping::TrajectoryBuilderInterface::InsertionResult* const
@@ -280,7 +281,7 @@ class Run {
                        });
   }
 
-  // On the searcher's thread.
+  // Called on the searcher's thread.
   void Located(const LocalizationResult& result) {
     if (clock_ == nullptr) return;
     const double cpu = clock_->cpu();
@@ -296,10 +297,10 @@ class Run {
   std::unique_ptr<Clock> clock_;
   LogRunResult result_;
   absl::Mutex mutex_;
-  // The scan that was fed last.
+  // Index of the last scan fed.
   size_t now_ ABSL_GUARDED_BY(mutex_) = 0;
   std::vector<LocalizationMoment> localizations_ ABSL_GUARDED_BY(mutex_);
-  // The last, as its threads use the others until it is gone.
+  // Last, because its threads use the other members until it is destroyed.
   const std::unique_ptr<mapping::MapBuilderInterface> map_builder_;
   LiveMapBuilder* const live_;
 };
@@ -319,9 +320,9 @@ absl::Status CheckWritable(const std::string& path) {
   return absl::OkStatus();
 }
 
-// The reader wants every key of the returned table to be used. What belongs to
-// ROS is not ours to use, and what the two tables hold should stay checked.
-// Line numbers in messages stay right.
+// The host's reader requires every key of the returned table to be used. Drops
+// keys that belong to ROS, but keeps the check of the two tables and the line
+// numbers in messages.
 std::string OnlyWhatIsUsed(const std::string& code) {
   return absl::StrCat("local function file() ", code,
                       "\nend\nlocal options = file()\nreturn {\n"
@@ -348,7 +349,7 @@ absl::StatusOr<HostOptions> LoadHostOptions(
     return absl::InvalidArgumentError(
         absl::StrCat(basename,
                      ": MAP_BUILDER.use_trajectory_builder_2d is not "
-                     "true, and 3D cannot be done"));
+                     "true, and 3D is not supported"));
   }
   return options;
 }
@@ -376,24 +377,23 @@ absl::StatusOr<LogRunResult> RunLog(
     return absl::InvalidArgumentError(problem);
   }
   if (recording.scans.size() < 2) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("a recording of ", recording.scans.size(),
-                     " scans is too short to be driven"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "a recording of ", recording.scans.size(), " scans is too short"));
   }
   if (options.output_path.has_value()) {
     const absl::Status status = CheckWritable(*options.output_path);
     if (!status.ok()) return status;
   }
-  // Before the run, as its end prints, too.
+  // Outlives the run, whose destructor prints too.
   const SilentStandardOutput silent;
   Run run(recording, options);
   absl::Status status = run.LoadMap();
   if (!status.ok()) return status;
-  // The host could not read a map again with a trajectory that has no nodes.
+  // The host could not load a map with a trajectory that has no nodes.
   if (!run.Drive(on_progress)) {
     return absl::InvalidArgumentError(
-        "Cartographer made no node of the recording: no beam has a range that "
-        "it accepts");
+        "Cartographer made no nodes from the recording: no beam has a range "
+        "that it accepts");
   }
   run.Finish();
   LogRunResult result = run.TakeResult();

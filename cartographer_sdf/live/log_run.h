@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A recording goes through a stock Cartographer, with the searcher around it or
-// without: as a robot would have lived it, and with the time and the CPU time
-// that it takes.
+// Runs a recording through a stock Cartographer, with or without the searcher,
+// as on a robot, and measures wall and CPU time.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_LOG_RUN_H_
 #define CARTOGRAPHER_SDF_LIVE_LOG_RUN_H_
@@ -29,13 +28,13 @@ struct HostOptions {
   cartographer::mapping::proto::TrajectoryBuilderOptions trajectory_builder;
 };
 
-// Cartographer's own options: the tables map_builder and trajectory_builder of
-// what the file returns, as in a file of cartographer_ros, whose other keys are
-// passed over. It and what it includes is looked for in the directories, then
-// where Cartographer is installed.
+// Loads Cartographer's own options: the tables map_builder and
+// trajectory_builder of the returned table, as in a file of cartographer_ros,
+// whose other keys are skipped. The file and its includes are searched for in
+// the directories, then where Cartographer is installed.
 //
-// Cartographer's reader knows no errors: a missing file and whatever is wrong
-// inside of one is LOG(FATAL). Only options for 3D are an error here.
+// Cartographer's reader does not return errors: a missing file or any problem
+// inside one is LOG(FATAL). Only options for 3D are an error here.
 [[nodiscard]] absl::StatusOr<HostOptions> LoadHostOptions(
     const std::vector<std::string>& directories, const std::string& basename);
 
@@ -48,32 +47,32 @@ struct LogRunOptions {
   LiveOptions live;
   // A frozen map to localise in.
   std::optional<std::string> map_path;
-  // Where the map goes in the end, all trajectories together.
+  // Path of the final map, with all trajectories.
   std::optional<std::string> output_path;
-  // How many seconds of the recording pass in one. None: as fast as
-  // Cartographer and the searcher can; Cartographer's own loop search is not
-  // waited for, as it cannot be asked.
+  // Seconds of the recording per second of wall time. None: as fast as
+  // Cartographer and the searcher can; the run does not wait for Cartographer's
+  // own loop search, whose progress cannot be queried.
   std::optional<double> real_time_factor;
 };
 [[nodiscard]] std::string Validate(const LogRunOptions& options);
 
-// What was believed when a node was made.
+// State at the time when a node was created.
 struct NodeMoment {
   int node_index = 0;
-  // The scan's, of the recording's clock [s].
+  // Time of the scan on the recording's clock [s].
   double time = 0.;
-  // Along the odometry, since the first scan [m].
+  // Odometry path length since the first scan [m].
   double distance = 0.;
   Rigid2 T_map_tracking;
-  // Whether a constraint binds the trajectory to the frozen map by now; without
-  // a map always false.
+  // Whether constraints connect the trajectory to the frozen map by now; always
+  // false without a map.
   bool is_connected = false;
-  // Of the whole process, since the first scan [s].
+  // CPU time of the whole process since the first scan [s].
   double cpu_seconds = 0.;
 };
 
-// When the searcher localised the trajectory; `result.reason` says why it did
-// not.
+// Result of a search; if the trajectory was not localised, `result.reason` says
+// why.
 struct LocalizationMoment {
   LocalizationResult result;
   double time = 0.;
@@ -90,19 +89,19 @@ struct LogRunResult {
   std::optional<LiveSummary> summary;
   std::vector<ClosureRecord> closures;
   int num_scans = 0;
-  // What each call of AddSensorData took, of any sensor [s].
+  // Duration of each call of AddSensorData, for any sensor [s].
   std::vector<double> sensor_seconds;
-  // Of the recording [s], [m].
+  // Duration [s] and distance [m] of the recording.
   double duration = 0.;
   double distance = 0.;
-  // Until the last scan, and for all that came after: waiting for the searcher
-  // and Cartographer's queue, and the final optimisation. CPU time is that of
-  // the whole process [s].
+  // Time until the last scan, and time of everything after it: waiting for the
+  // searcher and Cartographer's queue, and the final optimisation. CPU time is
+  // that of the whole process [s].
   double wall_seconds = 0.;
   double cpu_seconds = 0.;
   double final_wall_seconds = 0.;
   double final_cpu_seconds = 0.;
-  // How late a scan was fed at most, where there is a real_time_factor [s].
+  // Largest delay in feeding a scan, with a real_time_factor [s].
   double max_delay_seconds = 0.;
 };
 

@@ -15,11 +15,11 @@ namespace mapping = cartographer::mapping;
 namespace sensor = cartographer::sensor;
 namespace transform = cartographer::transform;
 
-// The host's pose graph as our users get it: everything is forwarded, and what
-// may take submaps or nodes away is announced before.
+// The host's pose graph as users see it: forwards every call, and first
+// announces those that may remove submaps or nodes.
 class GuardedPoseGraph : public mapping::PoseGraph {
  public:
-  // Neither is owned; both outlive this.
+  // Owns neither; both must outlive this.
   GuardedPoseGraph(mapping::PoseGraph* host, Searcher* searcher)
       : host_(host), searcher_(searcher) {}
 
@@ -173,8 +173,8 @@ class SearchingMapBuilder : public LiveMapBuilder {
     searcher_ = std::make_shared<Searcher>(options, pose_graph,
                                            std::move(on_localization));
     if (pose_graph == nullptr) {
-      LOG(WARNING) << "the pose graph is a remote one, to which no constraints "
-                      "can be added: what is found is only logged";
+      LOG(WARNING) << "the pose graph is remote, so constraints cannot be "
+                      "added: closures are only logged";
       return;
     }
     guarded_pose_graph_ =
@@ -185,8 +185,8 @@ class SearchingMapBuilder : public LiveMapBuilder {
 
   ~SearchingMapBuilder() override {
     searcher_->Shutdown();
-    // The pose graph does what is left to do, and calls hooks, which own the
-    // searcher too.
+    // The pose graph finishes its queue and calls hooks, which share ownership
+    // of the searcher.
     host_.reset();
   }
 
@@ -213,7 +213,7 @@ class SearchingMapBuilder : public LiveMapBuilder {
     const bool is_trimmed = trajectory_options.has_pure_localization_trimmer();
     int trajectory_id;
     {
-      // Trimmers are added, perhaps.
+      // May add trimmers.
       const Searcher::Announcement announcement(searcher_.get());
       trajectory_id = host_->AddTrajectoryBuilder(
           expected_sensor_ids, trajectory_options, std::move(callback));
@@ -302,7 +302,7 @@ class SearchingMapBuilder : public LiveMapBuilder {
 
   std::shared_ptr<Searcher> searcher_;
   std::unique_ptr<mapping::MapBuilderInterface> host_;
-  // Null where the pose graph is remote.
+  // Null if the pose graph is remote.
   std::unique_ptr<GuardedPoseGraph> guarded_pose_graph_;
 };
 

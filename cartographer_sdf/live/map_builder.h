@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The global constraint searcher beside a live, stock Cartographer. A program
-// that owns a map builder adopts it by one line:
+// that owns a map builder adopts it with one line:
 //
 //   map_builder = cartographer_sdf::CreateMapBuilder(std::move(map_builder),
 //                                                    options);
 //
-// Every finished submap is described and recognised among all others by a
-// worker thread; closures become constraints of the pose graph. Trajectories
-// that start after a map was loaded are localised in it.
+// A worker thread describes every finished submap and recognises it among all
+// others; closures become constraints of the pose graph. Trajectories that
+// start after a map was loaded are localised in it.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
 #define CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
@@ -34,34 +34,35 @@
 
 namespace cartographer_sdf {
 
-// What the latest query for a trajectory found.
+// Result of the latest query for a trajectory.
 struct LocalizationResult {
   int trajectory_id = 0;
-  // Whether the pose below is believed: enough queries in a row agreed.
+  // Whether the pose below is reliable: enough consecutive queries agreed.
   bool localized = false;
-  // Of the latest query; kUncertain also while too few queries agree.
+  // Verdict of the latest query; also kUncertain while too few queries agree.
   LocalizationVerdict verdict = LocalizationVerdict::kTooLittleSeen;
-  std::string reason;  // for people
-  // Of the newest scan that took part.
+  std::string reason;  // human-readable
+  // Time of the newest scan used.
   cartographer::common::Time time;
-  // The best pose so far; none where nothing matches. Believe it only where
-  // `localized`. Of the gravity-aligned node of the newest scan in the map ...
+  // The best pose so far; none if nothing matches. Reliable only if
+  // `localized`. Pose in the map of the gravity-aligned node of the newest scan
+  // ...
   std::optional<Rigid2> T_map_node;
   // ... and of the trajectory's local frame, which stays valid while local SLAM
   // does not drift.
   std::optional<Rigid2> T_map_local;
-  // Of the best placement, and of the best one that it excludes, 0 where there
-  // is none; log-odds.
+  // Score of the best placement, and of the best one that it excludes, 0 if
+  // there is none; log-odds.
   double score = 0.;
   double runner_up_score = 0.;
-  // The submap of the map that matches best.
+  // The best matching submap of the map.
   std::optional<SubmapId> reference;
   int num_queries = 0;
   double distance_driven = 0.;  // since the search began [m]
-  double cpu_seconds = 0.;      // of all its queries
+  double cpu_seconds = 0.;      // of all queries of the search
 };
 
-// Called on the worker thread without any lock: once when a search ends,
+// Called on the worker thread, with no lock held, once when a search ends,
 // localised or not. Must not destroy the builder.
 using LocalizationCallback = std::function<void(const LocalizationResult&)>;
 
@@ -78,13 +79,13 @@ struct LiveSummary {
   int num_submaps = 0;  // described since the start
   int num_queries = 0;
   int num_candidates = 0;
-  // Poses that were verified, by verdict ("accepted", "contradicted", ...).
+  // Number of verified poses, by verdict ("accepted", "contradicted", ...).
   std::map<std::string, int> num_matches;
   int num_closures = 0;     // accepted
   int num_injected = 0;     // of them
-  int num_constraints = 0;  // in the pose graph for them
+  int num_constraints = 0;  // added to the pose graph for them
   double worker_cpu_seconds = 0.;
-  // Added to AddSensorData by us, for each local SLAM result [s].
+  // Time that the searcher adds to AddSensorData per local SLAM result [s].
   int64_t num_callbacks = 0;
   double callback_mean_seconds = 0.;
   double callback_p99_seconds = 0.;
@@ -94,35 +95,36 @@ struct LiveSummary {
 // All methods may be called from any thread.
 class LiveMapBuilder : public cartographer::mapping::MapBuilderInterface {
  public:
-  // None where the trajectory was never searched for.
+  // Returns none if the trajectory was never searched for.
   [[nodiscard]] virtual std::optional<LocalizationResult> GetLocalization(
       int trajectory_id) const = 0;
-  // Searches for an active trajectory (again): after it was kidnapped, or where
-  // it started with a wrong initial pose. What was seen before does not count.
+  // Searches for an active trajectory (again): after it was kidnapped, or if it
+  // started with a wrong initial pose. Earlier scans are ignored.
   virtual void Localize(int trajectory_id) = 0;
 
-  // Blocks until the worker has done all that there is to do now. For programs
-  // that run recordings.
+  // Blocks until the worker has no tasks left. For programs that run
+  // recordings.
   virtual void WaitUntilIdle() = 0;
   [[nodiscard]] virtual LiveSummary GetSummary() const = 0;
-  // All that verification accepted, in the order of discovery.
+  // Returns all matches that verification accepted, in order of discovery.
   [[nodiscard]] virtual std::vector<ClosureRecord> GetClosures() const = 0;
 };
 
-// The host itself where `options.enabled` is false; else a LiveMapBuilder that
-// owns it. Options are valid. Where the host's pose graph is remote (a stub),
-// closures are detected, logged and not injected; 3D is left alone.
+// Returns the host itself if `options.enabled` is false; otherwise a
+// LiveMapBuilder that owns it. Options must be valid. If the host's pose graph
+// is remote (a stub), closures are detected and logged but not injected. 3D is
+// not affected.
 [[nodiscard]] std::unique_ptr<cartographer::mapping::MapBuilderInterface>
 CreateMapBuilder(
     std::unique_ptr<cartographer::mapping::MapBuilderInterface> host,
     const LiveOptions& options, LocalizationCallback on_localization = {});
 
-// Null where it is none, as with `enabled` false.
+// Returns null if it is not one, as with `enabled` false.
 [[nodiscard]] LiveMapBuilder* AsLiveMapBuilder(
     cartographer::mapping::MapBuilderInterface* map_builder);
 
-// Counts submaps, queries, candidates, matches by verdict, closures and
-// latencies from now on. Once per process, before CreateMapBuilder, as
+// Registers counters of submaps, queries, candidates, matches by verdict,
+// closures and latencies. Call once per process, before CreateMapBuilder, like
 // Cartographer's own RegisterMetrics.
 void RegisterMetrics(cartographer::metrics::FamilyFactory* family_factory);
 

@@ -15,17 +15,17 @@ namespace {
 
 namespace mapping = cartographer::mapping;
 
-// Durations of the latest so many callbacks are kept for the summary.
+// Maximum number of latest callback durations kept for the summary.
 constexpr size_t kMaxNumDurations = 200000;
 
-// Not in the graph, and nothing speaks against it getting there yet.
+// Returns whether the closure is not in the graph but may still get there.
 bool IsWaiting(const ClosureStatus status) {
   return status == ClosureStatus::kUnsupported ||
          status == ClosureStatus::kInconsistent ||
          status == ClosureStatus::kReady;
 }
 
-// The host calls it after each optimisation.
+// Called by the host after each optimisation.
 class Hook : public mapping::PoseGraphTrimmer {
  public:
   Hook(std::shared_ptr<Searcher> searcher, const int generation)
@@ -101,7 +101,7 @@ void Searcher::BeginSearch(const int trajectory_id,
 void Searcher::OnLocalSlamResult(
     const int trajectory_id, const cartographer::sensor::RangeData& range_data,
     const InsertionResult* const insertion) {
-  // Null where it was filtered; empty where it comes from a remote builder.
+  // Null if the scan was filtered out; empty if it comes from a remote builder.
   if (insertion == nullptr || insertion->constant_data == nullptr ||
       insertion->insertion_submaps.empty()) {
     return;
@@ -130,8 +130,7 @@ void Searcher::OnLocalSlamResult(
   callback_seconds_[static_cast<size_t>(summary_.num_callbacks) %
                     kMaxNumDurations] = static_cast<float>(seconds);
   ++summary_.num_callbacks;
-  summary_.callback_mean_seconds +=
-      seconds;  // their sum, until it is asked for
+  summary_.callback_mean_seconds += seconds;  // the sum, until GetSummary
   summary_.callback_max_seconds =
       std::max(summary_.callback_max_seconds, seconds);
 }
@@ -141,7 +140,7 @@ void Searcher::FollowSubmaps(const int trajectory_id,
                              Trajectory* const trajectory) {
   const auto& submaps = insertion.insertion_submaps;
   if (submaps.back().get() != trajectory->newest_submap) {
-    // As the pose graph numbers them.
+    // Same numbering as in the pose graph.
     const SubmapId id{trajectory_id, trajectory->num_submaps++};
     trajectory->newest_submap = submaps.back().get();
     trajectory->growing.push_back(id.index);
@@ -210,7 +209,7 @@ void Searcher::FinishTrajectory(const int trajectory_id,
   if (is_shut_down_ || !is_known || found->second.is_finished) return;
   Trajectory& trajectory = found->second;
   trajectory.is_finished = true;
-  // From here on they don't change.
+  // The growing submaps no longer change.
   if (!trajectory.is_trimmed) {
     for (const int index : trajectory.growing) {
       ScheduleDescription({trajectory_id, index});
@@ -238,7 +237,7 @@ void Searcher::ForgetTrajectory(const int trajectory_id) {
     if (id.trajectory == trajectory_id) ids.push_back(id);
   }
   for (const SubmapId& id : ids) ForgetSubmap(id);
-  // Those of growing submaps, which have no record.
+  // Closures of growing submaps, which have no record.
   ForgetSubmap({trajectory_id, kGrowingSubmapIndex});
   const auto found = trajectories_.find(trajectory_id);
   if (found == trajectories_.end()) return;
@@ -293,7 +292,7 @@ void Searcher::OnStateLoaded(const std::map<int, int>& trajectory_ids,
   if (pose_graph_ == nullptr) return;
   has_map_ = true;
   for (auto& [id, trajectory] : trajectories_) {
-    // What was driven before does not count: its scans are not known.
+    // Earlier driving does not count: its scans were not collected.
     if (trajectory.is_searched) BeginSearch(id, &trajectory);
   }
   worker_.Schedule([this, trajectory_ids, is_frozen, path] {
@@ -333,7 +332,7 @@ void Searcher::Localize(const int trajectory_id) {
   if (is_shut_down_ || found == trajectories_.end() || !found->second.is_live ||
       found->second.is_finished) {
     LOG(WARNING) << "trajectory " << trajectory_id
-                 << " is not active, and can't be localised";
+                 << " is not active and cannot be localised";
     return;
   }
   BeginSearch(trajectory_id, &found->second);

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The searcher beside a live pose graph: keeps the books of trajectories,
-// submaps and closures, gives the worker its tasks, and adds constraints when
-// that is safe (injection_gate.h).
+// The searcher beside a live pose graph: records trajectories, submaps and
+// closures, schedules the worker's tasks, and adds constraints when that is
+// safe (injection_gate.h).
 //
 // Threads: the host's sensor threads (OnLocalSlamResult), its pool threads
-// (EnterRound, with the host's mutex held), our worker (tasks), and whatever
-// thread calls the rest. Our mutex is taken with the host's mutex held, so no
-// method of the host's pose graph that takes its mutex is called with ours
-// held. AddSerializedConstraints takes another one, that of the queue, which
-// the host never holds while it calls us.
+// (EnterRound, with the host's mutex held), our worker (tasks), and any thread
+// for the other methods. Our mutex may be taken while the host's is held, so we
+// never call a method of the host's pose graph that takes its mutex while we
+// hold ours. AddSerializedConstraints takes a different mutex, that of the
+// queue, which the host never holds while it calls us.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
 #define CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
@@ -42,13 +42,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   using InsertionResult =
       cartographer::mapping::TrajectoryBuilderInterface::InsertionResult;
 
-  // The pose graph, null where it is remote, outlives everything but the hooks,
+  // The pose graph (null if remote) must outlive everything but the hooks,
   // which it owns.
   Searcher(const LiveOptions& options,
            cartographer::mapping::PoseGraph* pose_graph,
            LocalizationCallback on_localization);
 
-  // Around what starts a round or adds a trimmer.
+  // Scope around an event that starts a round or adds a trimmer.
   class Announcement {
    public:
     explicit Announcement(Searcher* searcher) : searcher_(searcher) {
@@ -64,31 +64,31 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
 
   void AddTrajectory(int trajectory_id, bool has_initial_pose, bool is_trimmed)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // On the sensor thread. `insertion` may be null.
+  // Called on the sensor thread. `insertion` may be null.
   void OnLocalSlamResult(int trajectory_id,
                          const cartographer::sensor::RangeData& range_data,
                          const InsertionResult* insertion)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void FinishTrajectory(int trajectory_id, const std::function<void()>& forward)
       ABSL_LOCKS_EXCLUDED(mutex_);
-  // Before it is deleted.
+  // Call before the trajectory is deleted.
   void ForgetTrajectory(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // After a state was loaded. Trajectories by their ids in the file; `path` is
-  // empty where there is no file.
+  // Call after a state was loaded. `trajectory_ids` are keyed by the ids in the
+  // file; `path` is empty if there is no file.
   void OnStateLoaded(const std::map<int, int>& trajectory_ids, bool is_frozen,
                      const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Waits for the worker, so that all that it finds takes part.
+  // Waits for the worker first, so that all its results are included.
   void RunFinalOptimization() ABSL_LOCKS_EXCLUDED(mutex_);
-  // The worker stops, and nothing is added to the pose graph any more.
+  // Stops the worker; nothing is added to the pose graph any more.
   void Shutdown() ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // By hooks, with the host's mutex held.
+  // Called by hooks, with the host's mutex held.
   void EnterRound(cartographer::mapping::Trimmable* graph, int generation)
       ABSL_LOCKS_EXCLUDED(mutex_);
   [[nodiscard]] bool IsHookObsolete(int generation) const
       ABSL_LOCKS_EXCLUDED(mutex_);
 
-  // As LiveMapBuilder.
+  // See LiveMapBuilder.
   [[nodiscard]] std::optional<LocalizationResult> GetLocalization(
       int trajectory_id) const ABSL_LOCKS_EXCLUDED(mutex_);
   void Localize(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
@@ -103,49 +103,48 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   struct SubmapRecord {
     HostSubmap submap;  // until it is described
     OdometryPose odometry;
-    // While it grows, all nodes; then those that are lifted.
+    // While it grows, all nodes; then those that may get constraints.
     std::vector<SubmapNode> nodes;
     double sum_of_distances = 0.;
     bool is_scheduled = false;
   };
   struct Trajectory {
-    bool is_live = false;     // nodes come through us
-    bool is_trimmed = false;  // its submaps go when it ends
+    bool is_live = false;     // its nodes pass through us
+    bool is_trimmed = false;  // its submaps are removed when it ends
     bool is_finished = false;
     int num_submaps = 0;
     const cartographer::mapping::Submap* newest_submap = nullptr;
     std::vector<int> growing;                 // indices of its submaps
     std::optional<Eigen::Vector2d> position;  // local
     double distance_driven = 0.;
-    // Being localised.
+    // State of the localisation.
     bool is_searched = false;
-    bool is_restarted = false;   // the worker has to start anew
+    bool is_restarted = false;   // the worker must start again
     bool was_localized = false;  // before this search
     bool is_query_scheduled = false;
-    double search_begin = 0.;         // distance driven then
+    double search_begin = 0.;         // distance driven at its start
     double next_query = 0.;           // distance driven
-    std::vector<NodeWithScan> scans;  // not yet taken by the worker
+    std::vector<NodeWithScan> scans;  // not yet passed to the worker
     std::optional<LocalizationResult> localization;
   };
-  // A closure in the books; it has its constraints while they wait.
+  // A recorded closure; holds its constraints while they wait.
   struct LiveClosure {
     Closure closure;
     int num_constraints = 0;
   };
-  // What the worker needs to decide on closures, copied under the lock.
+  // Input of the worker's decision on closures, copied under the lock.
   struct ClosureSnapshot {
-    std::vector<size_t> indices;  // in closures_
+    std::vector<size_t> indices;  // into closures_
     std::vector<Closure> closures;
     std::map<SubmapId, OdometryPose> odometry;
     std::map<SubmapId, std::vector<SubmapNode>> nodes;
   };
-  // The trajectories that are known, and whether nodes of theirs come through
-  // us.
+  // Known trajectories, and whether their nodes pass through us.
   using AreLive = std::map<int, bool>;
   using HostNodes =
       cartographer::mapping::MapById<cartographer::mapping::NodeId,
                                      cartographer::mapping::TrajectoryNode>;
-  // Nodes of live trajectories, as a round shows them.
+  // Number of nodes of live trajectories in a round.
   struct NodeCounts {
     int64_t num_done = 0;
     int64_t num_waiting = 0;
@@ -180,17 +179,17 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                         const cartographer::mapping::Trimmable& graph);
   std::vector<SubmapId> FindGone(const AreLive& are_live,
                                  const cartographer::mapping::Trimmable& graph);
-  // Those of ready closures whose submaps and nodes exist.
+  // Injects the constraints of ready closures whose submaps and nodes exist.
   void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
                    const HostNodes& nodes)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
 
-  // Tasks of the worker, and parts of them.
+  // Tasks of the worker and their parts.
   void CountPlaces() ABSL_LOCKS_EXCLUDED(mutex_);
   void CountQuery(double seconds, size_t num_candidates)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void DescribeAndRecognize(const SubmapId& id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Whether there is a new closure.
+  // Returns whether there is a new closure.
   bool AddClosures(const SubmapId& id,
                    const PlaceRecognizer::Recognition& recognition)
       ABSL_LOCKS_EXCLUDED(mutex_);
@@ -201,8 +200,8 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
       ABSL_LOCKS_EXCLUDED(mutex_);
   void DescribeLoaded(const std::map<int, int>& trajectory_ids, bool is_frozen,
                       const std::string& path) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Describes what is not in `places`, which are by their ids in the file;
-  // whether there was any. None where the worker is to stop.
+  // Describes submaps that are missing in `places`, which is keyed by ids in
+  // the file; returns whether there were any. None if the worker must stop.
   std::optional<bool> DescribeMissing(const std::map<int, int>& trajectory_ids,
                                       std::map<SubmapId, Place>* places)
       ABSL_LOCKS_EXCLUDED(mutex_);
@@ -210,14 +209,14 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                       std::map<SubmapId, Place> places)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void QueryLocalization(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // The scans that a query begins with; empty where none is due.
+  // The scans that a query starts with; empty if none is due.
   struct ScansOfQuery {
     std::vector<NodeWithScan> scans;
     bool is_restarted = false;
     double distance_driven = 0.;  // since the search began [m]
   };
   ScansOfQuery TakeScans(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Keeps the result; whether the search goes on to its end.
+  // Stores the result; returns whether it completes the search.
   bool RecordQuery(const BackgroundSearch::Query& query, double cpu_seconds,
                    LocalizationResult* result) ABSL_LOCKS_EXCLUDED(mutex_);
   void RefreshMapPoses() ABSL_LOCKS_EXCLUDED(mutex_);
@@ -237,13 +236,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   LiveSummary summary_ ABSL_GUARDED_BY(mutex_);
   std::vector<float> callback_seconds_ ABSL_GUARDED_BY(mutex_);
 
-  // Of rounds alone, which the host's mutex keeps apart.
+  // Used only in rounds, which the host's mutex serialises.
   std::map<int, int> newest_node_done_;
   std::map<int, std::set<int>> submaps_in_graph_;
 
-  // Of the worker's tasks alone.
+  // Used only by the worker's tasks.
   BackgroundSearch search_;
-  // Of loaded submaps; those without walls are absent.
+  // Of loaded submaps; submaps without walls are absent.
   std::map<SubmapId, OdometryPose> map_odometry_;
   std::optional<MapLayout> map_layout_;
   bool map_moves_ = false;  // not all of it is frozen

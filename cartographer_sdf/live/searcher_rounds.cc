@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The part of the searcher that meets the host's pose graph: what is left of it
-// after each optimisation, and when constraints are added to it.
+// The part of the searcher that accesses the host's pose graph: checks its
+// content after each optimisation, and adds constraints to it.
 
 #include <algorithm>
 #include <iterator>
@@ -30,8 +30,8 @@ void Searcher::EnterRound(mapping::Trimmable* const graph,
       are_live[id] = trajectory.is_live;
     }
   }
-  // Without our mutex, so that sensor threads don't wait for it. No node is
-  // added meanwhile, as the host's mutex is held.
+  // Without our mutex, so that sensor threads do not wait for it. No node is
+  // added meanwhile, because the host's mutex is held.
   const NodeCounts counts = CountNodes(are_live, *graph);
   const std::vector<SubmapId> gone = FindGone(are_live, *graph);
   const absl::MutexLock lock(&mutex_);
@@ -50,7 +50,7 @@ void Searcher::EnterRound(mapping::Trimmable* const graph,
       graph->GetTrajectoryNodes());
 }
 
-// Work on a node ends with its intra-submap constraints.
+// A node is done when it has its intra-submap constraints.
 Searcher::NodeCounts Searcher::CountNodes(const AreLive& are_live,
                                           const mapping::Trimmable& graph) {
   const auto& nodes = graph.GetTrajectoryNodes();
@@ -59,7 +59,7 @@ Searcher::NodeCounts Searcher::CountNodes(const AreLive& are_live,
   for (const int trajectory : nodes.trajectory_ids()) {
     const auto is_live = are_live.find(trajectory);
     if (is_live == are_live.end()) {
-      // Not known to us: any of them may wait.
+      // Unknown trajectory: any of its nodes may be waiting.
       counts.num_waiting +=
           static_cast<int64_t>(nodes.SizeOfTrajectoryOrZero(trajectory));
       continue;
@@ -94,7 +94,7 @@ std::vector<SubmapId> Searcher::FindGone(const AreLive& are_live,
   std::vector<SubmapId> gone;
   for (const auto& [trajectory, is_live] : are_live) {
     std::set<int>& known = submaps_in_graph_[trajectory];
-    // Loaded trajectories don't grow.
+    // Loaded trajectories do not grow.
     if (!is_live && !known.empty() &&
         graph.num_submaps(trajectory) == static_cast<int>(known.size())) {
       continue;
@@ -137,8 +137,8 @@ void Searcher::InjectReady(
     } else if (is_gone) {
       SetStatus(ClosureStatus::kGone, &closure);
     }
-    // Else a submap is still on its way into the graph, or its nodes are gone
-    // and it soon will be.
+    // Otherwise a submap is still on its way into the graph, or its nodes are
+    // gone and it soon will be.
   }
   if (constraints.empty()) return;
   summary_.num_constraints += static_cast<int>(constraints.size());
@@ -160,10 +160,10 @@ void Searcher::RunFinalOptimization() {
     num_announced = gate_.num_announced();
   }
   if (has_ready) {
-    // The host does all that waits in its queue. Nodes are not added meanwhile,
-    // as that is the host's own condition for a final optimisation; so where
-    // nothing else was announced by the time we are done, no round comes
-    // between our look at the graph and our constraints.
+    // The host processes its whole queue. Nodes are not added meanwhile: that
+    // is the host's own condition for a final optimisation. So if nothing else
+    // was announced by the end, no round comes between our look at the graph
+    // and our constraints.
     const Announcement announcement(this);
     pose_graph_->RunFinalOptimization();
     const auto submaps = pose_graph_->GetAllSubmapPoses();

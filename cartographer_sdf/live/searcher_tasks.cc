@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The tasks that the searcher gives its worker.
+// The worker's tasks.
 
 #include <algorithm>
 #include <chrono>
@@ -18,18 +18,18 @@ namespace {
 
 namespace mapping = cartographer::mapping;
 
-// Of the latest so many closures, those that agree are looked for: time grows
-// with the square.
+// Number of latest closures that are searched for consistency: time grows with
+// its square.
 constexpr size_t kMaxNumClosuresToAgree = 400;
-// Fraction of what was driven for a loaded map that counts as odometry that
-// drifts: its loops are closed.
+// Fraction of the distance driven that counts as drifting odometry in a loaded
+// map: its loops are closed.
 constexpr double kDriftOfMaps = 0.2;
 constexpr char kPlaceFileSuffix[] = ".places";
-// A query of a search that has gone on for long comes after so much of what was
-// driven since it began.
+// In a long search, the interval between queries is this fraction of the
+// distance driven since it began.
 constexpr double kQueryBackoff = 0.05;
 
-// What the query says of the trajectory.
+// Sets the result of a query for the trajectory.
 void FillIn(const BackgroundSearch::Query& query,
             const mapping::TrajectoryNode::Data& newest,
             const int min_num_queries, LocalizationResult* const result) {
@@ -94,7 +94,7 @@ void Searcher::DescribeAndRecognize(const SubmapId& id) {
     }
   }
   if (!place) {
-    LOG(INFO) << "submap " << id << " shows no walls, and is left out";
+    LOG(INFO) << "submap " << id << " shows no walls and is skipped";
     return;
   }
   search_.Remember(*std::move(place));
@@ -113,7 +113,7 @@ bool Searcher::AddClosures(const SubmapId& id,
   for (const Match& match : recognition.matches) {
     TheMetrics().matches.Increment(match.verdict);
     ++summary_.num_matches[VerdictName(match.verdict)];
-    // Forgotten meanwhile, or about to be.
+    // A submap was forgotten meanwhile, or is about to be.
     if (match.verdict != Verdict::kAccepted ||
         submaps_.count(match.pair.reference) == 0 || submaps_.count(id) == 0) {
       continue;
@@ -156,7 +156,7 @@ void Searcher::UpdateClosures(const SubmapId& newest) {
                  << " is in the pose graph, but others now contradict it";
   }
   for (size_t k = 0; k < decided.size(); ++k) {
-    // It has its constraints.
+    // It already has its constraints.
     if (snapshot.closures[k].status == ClosureStatus::kReady &&
         decided[k].status == ClosureStatus::kSelected) {
       decided[k].status = ClosureStatus::kReady;
@@ -172,7 +172,7 @@ void Searcher::ApplyDecisions(const SubmapId& newest,
   const absl::MutexLock lock(&mutex_);
   for (size_t k = decided.size(); k-- > 0;) {
     LiveClosure& closure = closures_[before.indices[k]];
-    // Unless something happened to it meanwhile.
+    // Skip closures whose status changed meanwhile.
     if (closure.closure.status != before.closures[k].status) continue;
     const bool is_new = decided[k].match.pair.query == newest;
     if (decided[k].status == closure.closure.status && !is_new) continue;
@@ -205,7 +205,7 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
         places = *std::move(read);
       } else if (!absl::IsNotFound(read.status())) {
         LOG(INFO) << read.status().message()
-                  << "; its submaps are described anew";
+                  << "; describing its submaps again";
       }
     }
   }
@@ -342,7 +342,7 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
                            LocalizationResult* const result) {
   const absl::MutexLock lock(&mutex_);
   Trajectory& trajectory = trajectories_.at(result->trajectory_id);
-  // Ended, or asked anew meanwhile.
+  // The search ended or was restarted meanwhile.
   if (!trajectory.is_searched || trajectory.is_restarted) return false;
   result->num_queries = trajectory.localization->num_queries + 1;
   result->cpu_seconds = trajectory.localization->cpu_seconds + cpu_seconds;
@@ -353,8 +353,8 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
   if (!result->localized) return false;
   trajectory.is_searched = false;
   trajectory.scans.clear();
-  // Once it has been in the map, constraints of before the kidnapping would
-  // pull against those of after it.
+  // If the trajectory was localised before, constraints from before the
+  // kidnapping would pull against those from after it.
   const bool may_inject = MayInject() && !trajectory.was_localized;
   for (const Closure& found : query.closures) {
     LiveClosure closure;

@@ -13,7 +13,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// As the host's own background threads.
+// Same as the host's background threads.
 constexpr int kNiceness = 10;
 
 }  // namespace
@@ -57,7 +57,7 @@ double Worker::CpuSeconds() const {
 
 void Worker::Run() {
 #ifdef __linux__
-  // Of this thread alone, on Linux. Failing does no harm.
+  // On Linux, affects only this thread. Failure is harmless.
   if (nice(kNiceness) == -1) VLOG(1) << "no lower priority";
 #endif
   const auto has_work = [this]() ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_) {

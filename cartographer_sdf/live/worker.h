@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// One thread of low priority that does what it is given, in order.
+// A low-priority thread that runs tasks in order.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_WORKER_H_
 #define CARTOGRAPHER_SDF_LIVE_WORKER_H_
@@ -16,7 +16,7 @@
 
 namespace cartographer_sdf {
 
-// Of the calling thread [s].
+// CPU time of the calling thread [s].
 [[nodiscard]] double ThreadCpuSeconds();
 
 [[nodiscard]] inline double SecondsSince(
@@ -33,13 +33,14 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Dropped after Stop.
+  // Drops the task after Stop.
   void Schedule(std::function<void()> task) ABSL_LOCKS_EXCLUDED(mutex_);
-  // Returns at once when called by a task, which would wait for itself.
+  // Returns at once when called by a task, which would otherwise wait for
+  // itself.
   void WaitUntilIdle() ABSL_LOCKS_EXCLUDED(mutex_);
   // Finishes the running task, drops the others.
   void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
-  // Of the tasks that are done.
+  // CPU time of completed tasks [s].
   [[nodiscard]] double CpuSeconds() const ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:

@@ -14,18 +14,18 @@
 namespace cartographer_sdf {
 namespace {
 
-// Value 0 is unknown, 1 to 32767 map linearly to the range of the quantity.
+// Value 0 means unknown; 1 to 32767 map linearly to the range of the quantity.
 constexpr int kUnknownValue = 0;
 constexpr int kMaxValue = 32767;
 constexpr float kNumSteps = 32766.f;
-// The host's bounds of correspondence costs, which are 1 - probability. Files
-// of before they were stored have zeros.
+// The host's bounds of correspondence costs, which are 1 - probability. Older
+// files, which do not store the bounds, have zeros.
 constexpr float kMinCost = 0.1f;
 constexpr float kMaxCost = 0.9f;
-// Beyond them [m], cells are no cells of a map.
+// Bounds of a plausible cell size [m].
 constexpr double kMinResolution = 1e-4;
 constexpr double kMaxResolution = 1e3;
-// Of the occupancy of a TSDF, see the header.
+// Parameters of the occupancy of a TSDF, see the header.
 constexpr float kSurfaceProbability = 0.9f;
 constexpr float kFreeProbability = 0.1f;
 constexpr float kFreeDistanceInCells = 1.5f;
@@ -42,7 +42,7 @@ int FloatToValue(const float number, const float lower, const float upper) {
          1;
 }
 
-// Position of cell (i, j) of ours in the host's list of cells.
+// Returns the position of our cell (i, j) in the host's list of cells.
 int FlatIndex(const Eigen::Array2i& size, const int i, const int j) {
   const int host_x = size.y() - 1 - j;
   const int host_y = size.x() - 1 - i;
@@ -150,7 +150,7 @@ absl::Status FillImpliedProbabilities(const proto::Grid2D& stored,
       const int value = stored.cells(flat_index);
       const float distance = ValueToFloat(value, -truncation, truncation);
       if (value == kUnknownValue ||
-          // Both "unknown" and the lowest value are a weight of zero.
+          // "Unknown" and the lowest value both mean a weight of zero.
           tsdf.weight_cells(flat_index) <= 1 ||
           distance < -kSurfaceDistanceInCells * resolution) {
         continue;

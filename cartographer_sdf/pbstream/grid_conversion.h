@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Cartographer's grids to ours and back: the only place that knows how the host
-// orders cells and encodes values.
+// Converts Cartographer's grids to ours and back. Only this code knows how the
+// host orders cells and encodes values.
 //
 // The host's cells lie in the trajectory's local frame. Its fast index runs
-// along -y and its slow index along -x, from the corner `max`; ours run along
-// +x and +y from the opposite corner. No cell is dropped or resampled.
+// along -y and its slow index along -x, starting at the corner `max`; ours run
+// along +x and +y from the opposite corner. No cell is dropped or resampled.
 
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_GRID_CONVERSION_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_GRID_CONVERSION_H_
@@ -18,24 +18,25 @@
 
 namespace cartographer_sdf {
 
-// The occupancy of a probability grid, or that which the signed distance of a
-// TSDF implies (exactly at cell centres, a heuristic in its values):
+// Returns the occupancy of a probability grid, or the occupancy that the signed
+// distance of a TSDF implies (exact at cell centres, heuristic in its values):
 //
-// - The surface is where the distance changes sign. A surface passes within
-//   half a cell of a centre in every column it crosses, or else in every row,
-//   so cells that near are its gap-free image. Probability falls linearly from
-//   0.9 on the surface over 0.5 at 3/4 of a cell, a margin for noise and for
-//   thresholds above 0.5, to 0.1 at 3/2 of a cell or at the truncation.
-// - Cells further behind the surface were not seen but extrapolated along the
-//   ray; like those without weight they are unknown.
+// - The surface is where the distance changes sign. In every column that a
+//   surface crosses, or else in every row, it passes within half a cell of a
+//   centre, so the cells within half a cell form its gap-free image.
+//   Probability falls linearly from 0.9 on the surface to 0.5 at 3/4 of a cell,
+//   a margin for noise and for thresholds above 0.5, and to 0.1 at 3/2 of a
+//   cell or at the truncation distance.
+// - Cells farther behind the surface were not observed but extrapolated along
+//   the ray; like cells without weight they are unknown.
 //
 // The message of an error is a predicate, as in pose_codec.h.
 [[nodiscard]] absl::StatusOr<OccupancyGrid> MakeOccupancyGrid(
     const proto::Grid2D& grid, const Rigid2& T_local_submap);
 
-// A probability grid with the host's bounds, into which probabilities are
-// clamped: [0.1, 0.9] in steps of 0.8 / 32766. The grid's axes must be those of
-// the local frame.
+// Returns a probability grid with the host's bounds, to which probabilities are
+// clamped: [0.1, 0.9] in steps of 0.8 / 32766. The grid's axes must be aligned
+// with those of the local frame.
 [[nodiscard]] proto::Grid2D MakeGrid2D(const OccupancyGrid& grid,
                                        const Rigid2& T_local_submap);
 

@@ -24,7 +24,7 @@ namespace {
 
 using Kind = proto::SerializedData::DataCase;
 
-// The host's order.
+// The host's order of record kinds.
 constexpr Kind kOrder[] = {Kind::kSubmap,         Kind::kNode,
                            Kind::kTrajectoryData, Kind::kImuData,
                            Kind::kOdometryData,   Kind::kFixedFramePoseData,
@@ -34,21 +34,21 @@ void Renumber(const MapPart& part, proto::Id* const id) {
   id->set_trajectory_id(part.trajectories.at(id->trajectory_id()));
 }
 
-// The records that come first, of all parts under their new numbers.
+// The leading records, merged from all parts under the new numbers.
 struct Beginning {
   proto::SerializationHeader header;
   proto::SerializedData pose_graph;
   proto::SerializedData options;
 };
 
-// As AppendMap, of the stored graph.
+// AppendMap for the stored graph.
 absl::Status AppendStored(const MapPart& part, proto::PoseGraph stored,
                           proto::PoseGraph* const joined) {
   for (proto::Trajectory& trajectory : *stored.mutable_trajectory()) {
     const auto number = part.trajectories.find(trajectory.trajectory_id());
     if (number == part.trajectories.end()) {
       return absl::FailedPreconditionError(
-          absl::StrCat(part.path, " has changed: it has got trajectory ",
+          absl::StrCat(part.path, " has changed: it has a new trajectory ",
                        trajectory.trajectory_id()));
     }
     trajectory.set_trajectory_id(number->second);
@@ -84,8 +84,8 @@ void AppendOptions(const MapPart& part,
         *entry.mutable_trajectory_builder_options();
     const auto number = part.trajectories.find(
         builder.initial_trajectory_pose().to_trajectory_id());
-    // Cartographer keeps what a trajectory once began at, even where that has
-    // been deleted since; a number that now means another would mislead.
+    // Cartographer keeps the trajectory that an initial pose refers to, even
+    // after that trajectory was deleted; its number may now denote another one.
     if (number == part.trajectories.end()) {
       builder.clear_initial_trajectory_pose();
     } else {
@@ -96,11 +96,11 @@ void AppendOptions(const MapPart& part,
   joined->MergeFrom(options);
 }
 
-// Reads a part record by record, one ahead. The records are checked as
-// ReadMap() does.
+// Reads a part record by record, one ahead, with the checks of ReadMap().
 class PartReader {
  public:
-  // Goes to the first record behind the beginning, to which it is added.
+  // Adds the leading records to `beginning` and advances to the first one
+  // after.
   [[nodiscard]] static absl::StatusOr<PartReader> Open(
       const MapPart& part, const ProgressCallback& on_progress,
       Beginning* const beginning) {
@@ -138,14 +138,14 @@ class PartReader {
     return absl::OkStatus();
   }
 
-  // Adds the attitudes of nodes that have come so far under their new numbers.
+  // Adds the attitudes of the nodes read so far, under the new numbers.
   void AppendAttitudes(Attitudes* const attitudes) const {
     for (const auto& [id, attitude] : reader_.attitudes()) {
       attitudes->emplace(Renumbered(*part_, id), attitude);
     }
   }
 
-  // Writes the current record under its new number.
+  // Writes the current record with its new trajectory number.
   [[nodiscard]] absl::Status WriteRecord(
       const std::map<int, Rigid3>& T_joined_map,
       RecordWriter* const writer) const {
@@ -183,8 +183,8 @@ class PartReader {
           *moved.mutable_trajectory_data()->mutable_fixed_frame_origin_in_map();
       const absl::StatusOr<Rigid3> before = FromProto(origin);
       if (!before.ok()) {
-        return reader_.Corrupted(absl::StrCat("has an origin of GPS that ",
-                                              before.status().message()));
+        return reader_.Corrupted(
+            absl::StrCat("has a GPS origin that ", before.status().message()));
       }
       origin = ToProto(T->second * *before);
     }
@@ -196,7 +196,7 @@ class PartReader {
   bool is_at_end_ = false;
 };
 
-// How the first node of each trajectory moved.
+// Returns the motion of the first node of each trajectory.
 std::map<int, Rigid3> FirstNodesMoved(const PoseGraph& before,
                                       const PoseGraph& after) {
   std::map<int, Rigid3> moved;
@@ -210,7 +210,7 @@ std::map<int, Rigid3> FirstNodesMoved(const PoseGraph& before,
   return moved;
 }
 
-// Returns how the parts were moved.
+// Returns the motion of the first node of each trajectory.
 absl::StatusOr<std::map<int, Rigid3>> WriteBeginning(
     const PoseGraph& pose_graph, const Attitudes& attitudes,
     const std::string& output, Beginning* const beginning,
@@ -240,8 +240,9 @@ absl::StatusOr<std::map<int, Rigid3>> WriteBeginning(
   return FirstNodesMoved(before, pose_graph);
 }
 
-// Each file is read once: all go on while they have records of the kind whose
-// turn it is. What comes too late in a file is written where it comes.
+// Reads each file once: in turn for each kind, writes the records of that kind
+// from all files. A record that comes too late in its file is written where it
+// comes.
 absl::Status WriteRecords(const std::map<int, Rigid3>& T_joined_map,
                           std::vector<PartReader>* const parts,
                           RecordWriter* const writer) {
@@ -267,7 +268,7 @@ absl::StatusOr<WrittenMap> JoinMaps(const std::vector<MapPart>& parts,
                                     const Attitudes& attitudes,
                                     const std::string& output,
                                     const ProgressCallback& on_progress) {
-  // Of each part, of which the mean is that of the whole.
+  // Progress of each part; the total is their mean.
   std::vector<double> fractions(parts.size(), 0.);
   Beginning beginning;
   std::vector<PartReader> readers;

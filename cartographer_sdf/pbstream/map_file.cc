@@ -13,7 +13,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// The pose graph with the changes; none where nothing differs.
+// Returns the changed pose graph; none if nothing differs.
 absl::StatusOr<std::optional<std::string>> ChangedPoseGraph(
     const PoseGraph& pose_graph, const Attitudes& attitudes,
     proto::SerializedData record) {
@@ -105,7 +105,7 @@ absl::StatusOr<RecordWriter> PrepareMap(const std::string& input,
                                         const PoseGraph& pose_graph,
                                         const MapVisitor& visitor,
                                         const ProgressCallback& on_progress) {
-  // Who has seen all is not called again.
+  // A visitor that has seen the whole map is not called again.
   MapVisitor next_visitor = visitor;
   return WriteWithAssumedAttitudes(pose_graph, [&](const Attitudes& attitudes) {
     return CopyMap(input, output, pose_graph, attitudes,

@@ -17,18 +17,18 @@ using Kind = proto::SerializedData::DataCase;
 
 constexpr char kPoseGraphName[] = "pose graph";
 constexpr char kOptionsName[] = "options of trajectory builders";
-// With and without histograms in submaps, which are of no use in 2D.
+// With and without histograms in submaps, which 2D does not use.
 constexpr uint32_t kMinFormatVersion = 1;
 constexpr uint32_t kMaxFormatVersion = 2;
 
-// The field that a record has, "unknown" for any other.
+// Returns the name of the field that a record has; "unknown" for any other.
 std::string KindName(const proto::SerializedData& data) {
   if (data.data_case() == Kind::DATA_NOT_SET) return "unknown";
   return data.GetDescriptor()->FindFieldByNumber(data.data_case())->name();
 }
 
-// Whether nodes have the same gravity alignment in both; one that is absent has
-// none.
+// Returns whether nodes have the same gravity alignment in both; an absent node
+// has the identity.
 bool AreSame(Attitudes a, Attitudes b) {
   for (const auto& entry : a) b[entry.first];
   for (const auto& entry : b) a[entry.first];
@@ -62,7 +62,7 @@ absl::Status MapReader::ReadHeader() {
         records_.path(), " is truncated: it ends before its header"));
   }
   proto::SerializationHeader header;
-  if (!header.ParseFromString(record_)) return Corrupted("is no header");
+  if (!header.ParseFromString(record_)) return Corrupted("is not a header");
   if (header.format_version() < kMinFormatVersion ||
       header.format_version() > kMaxFormatVersion) {
     return absl::UnimplementedError(absl::StrCat(
@@ -87,7 +87,7 @@ absl::StatusOr<bool> MapReader::Next() {
                      num_records_ == 0 ? kPoseGraphName : kOptionsName));
   }
   if (!data_.ParseFromString(record_)) {
-    return Corrupted("is no valid protocol buffer");
+    return Corrupted("is not a valid protocol buffer");
   }
   ++state_.num_records[KindName(data_)];
   ++num_records_;
@@ -114,7 +114,7 @@ absl::Status MapReader::ReadPoseGraph() {
   const absl::Status status = Expect(Kind::kPoseGraph, kPoseGraphName);
   if (!status.ok()) return status;
   stored_pose_graph_ = data_.pose_graph();
-  // Poses are preliminary: the attitudes of the nodes are not known yet.
+  // Poses are preliminary: the nodes' attitudes are not known yet.
   absl::StatusOr<PoseGraph> graph = ToPoseGraph(stored_pose_graph_, {});
   if (!graph.ok()) return Corrupted(graph.status().message());
   state_.pose_graph = *std::move(graph);

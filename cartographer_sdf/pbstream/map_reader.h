@@ -19,9 +19,9 @@
 
 namespace cartographer_sdf {
 
-// ReadMap() record by record, with all its checks, for those who copy the
-// records on the way. The first call of Next() goes to the pose graph, the
-// second to the options, further ones to whatever the file has.
+// ReadMap() record by record, with all its checks, for callers that copy the
+// records as they pass. The first call of Next() advances to the pose graph,
+// the second to the options, later ones to whatever the file has.
 class MapReader {
  public:
   // Reads the header. `on_progress` may be empty.
@@ -29,12 +29,12 @@ class MapReader {
       const std::string& path, MapVisitor visitor,
       const ProgressCallback& on_progress);
 
-  // Goes to the next record and checks it; false at the end of the file. To end
-  // before the options is an error.
+  // Advances to the next record and checks it; false at the end of the file. A
+  // file that ends before the options is an error.
   [[nodiscard]] absl::StatusOr<bool> Next();
 
-  // Of the current record; its bytes, and as the file has them. At first those
-  // of the header.
+  // The current record decoded, as bytes, and compressed as in the file.
+  // Initially the header.
   [[nodiscard]] const proto::SerializedData& data() const { return data_; }
   [[nodiscard]] const std::string& record() const { return record_; }
   [[nodiscard]] const std::string& compressed() const {
@@ -44,17 +44,17 @@ class MapReader {
     return records_.Corrupted(problem);
   }
   [[nodiscard]] int format_version() const { return state_.format_version; }
-  // Of the nodes whose records have come so far.
+  // Attitudes of the nodes whose records have been read so far.
   [[nodiscard]] const Attitudes& attitudes() const { return attitudes_; }
 
-  // What ReadMap() returns. Only at the end of the file, and once.
+  // Returns the result of ReadMap(). Call once, at the end of the file.
   [[nodiscard]] MapState Finish();
 
  private:
   explicit MapReader(RecordReader records) : records_(std::move(records)) {}
 
   [[nodiscard]] absl::Status ReadHeader();
-  // That the current record is of this kind.
+  // Returns an error unless the current record is of this kind.
   [[nodiscard]] absl::Status Expect(proto::SerializedData::DataCase kind,
                                     const char* name) const;
   [[nodiscard]] absl::Status ReadPoseGraph();
@@ -73,23 +73,23 @@ class MapReader {
   MapState state_;
   proto::PoseGraph stored_pose_graph_;
   Attitudes attitudes_;
-  std::optional<NodeOdometry> odometry_;  // from the pose graph on
+  std::optional<NodeOdometry> odometry_;  // set once the pose graph is read
 };
 
-// Writing a map while it is read. Its pose graph comes first in the file, but
-// to change it takes the nodes' gravity alignments, which come later, in the
-// nodes' own records. A pose graph that ReadMap() returned has them too; they
-// are assumed to be those of the file, and compared with them at its end.
+// Writes a map while it is read. The pose graph comes first in the file, but
+// changing it requires the nodes' gravity alignments, which come later, in the
+// nodes' own records. A pose graph returned by ReadMap() contains them; they
+// are assumed to match the file and are compared with it at its end.
 struct WrittenMap {
-  RecordWriter file;  // whole, to be committed
-  // What the nodes' records turned out to have.
+  RecordWriter file;  // complete, not yet committed
+  // The attitudes found in the nodes' records.
   Attitudes attitudes;
 };
 using AssumingWriter =
     std::function<absl::StatusOr<WrittenMap>(const Attitudes& assumed)>;
 
 // Calls `write` with the gravity alignments of `pose_graph`, and once more with
-// the right ones where those were wrong: where `pose_graph` lacks nodes, or its
+// those of the file if they differ: where `pose_graph` lacks nodes, or its
 // gravity alignments were changed. Fails as `write` does.
 [[nodiscard]] absl::StatusOr<RecordWriter> WriteWithAssumedAttitudes(
     const PoseGraph& pose_graph, const AssumingWriter& write);

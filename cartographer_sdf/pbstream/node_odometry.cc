@@ -15,7 +15,7 @@ Rigid3 Interpolate(const Rigid3& start, const Rigid3& end,
       start.rotation.slerp(fraction, end.rotation).normalized()};
 }
 
-// Of times in order; their difference may exceed int64_t.
+// For ordered times; their difference may exceed int64_t.
 double Duration(const int64_t start, const int64_t end) {
   return static_cast<double>(static_cast<uint64_t>(end) -
                              static_cast<uint64_t>(start));

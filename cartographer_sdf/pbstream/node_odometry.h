@@ -16,16 +16,16 @@
 
 namespace cartographer_sdf {
 
-// Interpolates a stream of odometry at the times of nodes, as the host does
-// when it optimises: translation linearly, rotation along the shortest arc,
-// nothing before the first and after the last measurement. Memory is one pose
-// per node, however long the stream. Times are the file's [100 ns].
+// Interpolates an odometry stream at the times of nodes, as the host does when
+// it optimises: translation linearly, rotation along the shortest arc, nothing
+// before the first or after the last measurement. Memory is one pose per node,
+// regardless of the length of the stream. Times are as in the file [100 ns].
 class NodeOdometry {
  public:
   explicit NodeOdometry(const std::map<NodeId, Node>& nodes);
 
   // Measurements of a trajectory must come in strictly increasing time order,
-  // as the host demands too; those of trajectories without nodes are ignored.
+  // as the host requires too; those of trajectories without nodes are ignored.
   // The message of an error is a predicate.
   [[nodiscard]] absl::Status Add(int trajectory, int64_t time,
                                  const Rigid3& pose);
@@ -39,7 +39,7 @@ class NodeOdometry {
     Rigid3 pose;
   };
   struct TrajectoryState {
-    // In time order; those before `next` are dealt with.
+    // In time order; nodes before `next` are done.
     std::vector<std::pair<int64_t, NodeId>> nodes;
     size_t next = 0;
     std::optional<Measurement> last;
@@ -49,8 +49,8 @@ class NodeOdometry {
   std::map<NodeId, Rigid3> poses_;
 };
 
-// Sets T_previous_node_by_odometry of nodes that have odometry, as has their
-// predecessor by index. Gravity alignments must be set.
+// Sets T_previous_node_by_odometry of each node for which both the node and its
+// predecessor by index have odometry. Gravity alignments must be set.
 void SetRelativeOdometry(const std::map<NodeId, Rigid3>& odometry,
                          std::map<NodeId, Node>* nodes);
 

@@ -75,7 +75,7 @@ proto::CompressedPointCloud CompressPointCloud(const PointCloud2& points) {
 absl::StatusOr<PointCloud2> DecompressPointCloud(
     const proto::CompressedPointCloud& cloud) {
   PointCloud2 points;
-  // At most what is there, whatever is claimed.
+  // Bounded by the data present, whatever size is claimed.
   points.reserve(static_cast<size_t>(
       std::clamp(cloud.num_points(), 0, cloud.point_data_size())));
   const int* value = cloud.point_data().data();

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Cartographer's compressed point clouds: points rounded to millimetres, sorted
-// into blocks of 1.024 m, each block its number of points, its three integer
-// coordinates, and one integer of three times ten bits per point.
+// Encodes and decodes Cartographer's compressed point clouds: points rounded to
+// millimetres and sorted into blocks of 1.024 m. A block holds its number of
+// points, its three integer coordinates, and one integer of three times ten
+// bits per point.
 
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_POINT_CLOUD_CODEC_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_POINT_CLOUD_CODEC_H_
@@ -14,15 +15,15 @@
 
 namespace cartographer_sdf {
 
-// Beyond it, neither the host nor we can encode a coordinate [m].
+// Largest coordinate that the host or this code can encode [m].
 constexpr float kMaxEncodedCoordinate = 8388.f;
 
-// Blocks are in the order of their coordinates, points within a block in the
-// order given; z is 0. Coordinates must lie within kMaxEncodedCoordinate.
+// Blocks are ordered by their coordinates, points within a block as given; z is
+// 0. Coordinates must lie within kMaxEncodedCoordinate.
 [[nodiscard]] proto::CompressedPointCloud CompressPointCloud(
     const PointCloud2& points);
 
-// Drops z. The error says what is wrong, not where.
+// Drops z. An error states the problem, not where it is.
 [[nodiscard]] absl::StatusOr<PointCloud2> DecompressPointCloud(
     const proto::CompressedPointCloud& cloud);
 

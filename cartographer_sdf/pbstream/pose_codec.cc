@@ -14,7 +14,7 @@ absl::StatusOr<Eigen::Quaterniond> FromProto(
   const Eigen::Quaterniond quaternion(rotation.w(), rotation.x(), rotation.y(),
                                       rotation.z());
   if (!std::isnormal(quaternion.squaredNorm())) {
-    return absl::DataLossError("has a rotation that is no quaternion");
+    return absl::DataLossError("has a rotation that is not a quaternion");
   }
   return quaternion.normalized();
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Poses as the file has them. The message of an error is a predicate ("has no
-// rotation"), for callers to put a subject before it.
+// Converts poses from and to the file format. The message of an error is a
+// predicate ("has no rotation"), to which callers prepend a subject.
 
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_POSE_CODEC_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_POSE_CODEC_H_
@@ -17,11 +17,11 @@
 
 namespace cartographer_sdf {
 
-// Of a translation and of a corner of a grid [m]: no robot goes there, and
-// products of poses stay finite.
+// Bound on translations and grid corners [m]: beyond any robot, and small
+// enough that products of poses stay finite.
 constexpr double kMaxCoordinate = 1e9;
 
-// "submap 0,3", say, for errors.
+// Returns a name for error messages, such as "submap 0,3".
 template <typename IdType>
 [[nodiscard]] std::string Name(const char* const kind, const IdType& id) {
   return absl::StrCat(kind, " ", id.trajectory, ",", id.index);
@@ -31,11 +31,11 @@ template <typename IdType>
   return absl::StrCat(kind, " ", id);
 }
 
-// Normalises. An error unless the norm is a positive finite number.
+// Normalises the quaternion. Fails unless its norm is positive and finite.
 [[nodiscard]] absl::StatusOr<Eigen::Quaterniond> FromProto(
     const proto::Quaterniond& rotation);
-// A translation may be absent, which is zero to protocol buffers; a rotation
-// may not, because the default is no rotation.
+// A translation may be absent, which protocol buffers read as zero; a rotation
+// may not, because its default value is not a rotation.
 [[nodiscard]] absl::StatusOr<Rigid3> FromProto(const proto::Rigid3d& pose);
 
 [[nodiscard]] proto::Quaterniond ToProto(const Eigen::Quaterniond& rotation);

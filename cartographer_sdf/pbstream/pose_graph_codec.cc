@@ -21,7 +21,7 @@ namespace {
 constexpr int kIntraSubmapTag = 0;
 constexpr int kInterSubmapTag = 1;
 
-// Differences of times must not overflow [100 ns].
+// Time differences must not overflow [100 ns].
 constexpr int64_t kMaxTime = std::numeric_limits<int64_t>::max() / 2;
 
 absl::Status Problem(const std::string& subject, const absl::Status& status) {
@@ -29,7 +29,7 @@ absl::Status Problem(const std::string& subject, const absl::Status& status) {
       absl::StrCat("has ", subject, ", which ", status.message()));
 }
 
-// Of a submap or node that is not among those known so far.
+// Returns the pose of a submap or node that is not known so far.
 template <typename IdType, typename Element, typename Stored>
 absl::StatusOr<Rigid3> PoseOfNew(const char* const kind, const IdType& id,
                                  const std::map<IdType, Element>& known,
@@ -131,7 +131,7 @@ bool IsFinite(const Rigid3& pose) {
          std::abs(pose.rotation.norm() - 1.) < 0.5;
 }
 
-// Of a weight, which is not negative either.
+// Also checks that the weight is not negative.
 bool IsFinite(const double weight) {
   return std::isfinite(weight) && weight >= 0.;
 }
@@ -176,8 +176,8 @@ absl::Status CheckWantedConstraint(const PoseGraph& graph,
   return absl::OkStatus();
 }
 
-// Writes what differs from `before`, null where the constraint is new; returns
-// whether anything did.
+// Writes the differences from `before`, which is null for a new constraint;
+// returns whether there were any.
 bool UpdateConstraint(const Constraint* const before, const Constraint& after,
                       const Eigen::Quaterniond& gravity,
                       proto::Constraint* const stored) {
@@ -193,7 +193,7 @@ bool UpdateConstraint(const Constraint* const before, const Constraint& after,
          before->rotation_weight != after.rotation_weight;
 }
 
-// What does not change.
+// Sets the fields that updates do not change.
 proto::Constraint NewConstraint(const Constraint& constraint) {
   proto::Constraint stored;
   stored.mutable_submap_id()->set_trajectory_id(constraint.submap.trajectory);
@@ -259,7 +259,7 @@ absl::Status CheckPoses(const char* const kind,
   return absl::OkStatus();
 }
 
-// The pose of `after` where it has one that differs, else null.
+// Returns the pose of `after` if it exists and differs, else null.
 template <typename IdType, typename Element>
 auto NewPose(const std::map<IdType, Element>& before,
              const std::map<IdType, Element>& after, const IdType& id) {

@@ -23,10 +23,10 @@ namespace {
 
 constexpr uint64_t kMagic = 0x7b1d1f7b5bf501db;
 constexpr int kWordSize = 8;
-// Protocol buffers cannot be larger.
+// Size limit of protocol buffers.
 constexpr int64_t kMaxRecordSize = std::numeric_limits<int32_t>::max();
 constexpr int kChunkSize = 1 << 16;
-// Of zlib: the largest window, with gzip header and trailer.
+// For zlib: the largest window, with gzip header and trailer.
 constexpr int kGzipWindowBits = 15 + 16;
 
 uint64_t DecodeWord(const std::array<char, kWordSize>& bytes) {
@@ -107,7 +107,7 @@ absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
   if (remaining < kWordSize) {
     return absl::DataLossError(absl::StrCat(path_, " is truncated: ", remaining,
                                             " bytes after record ",
-                                            num_records_, " are no record"));
+                                            num_records_, " are not a record"));
   }
   std::array<char, kWordSize> word;
   absl::Status status = ReadBytes(kWordSize, word.data());
@@ -161,10 +161,10 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
     }
     record->append(output.data(), produced);
   }
-  // No input is left, none of the output either.
+  // Neither input nor output is left.
   if (result == Z_BUF_ERROR) return Corrupted("ends too early");
   if (result != Z_STREAM_END) {
-    return Corrupted(absl::StrCat("is no valid gzip data (",
+    return Corrupted(absl::StrCat("is not valid gzip data (",
                                   stream.msg ? stream.msg : "no message", ")"));
   }
   if (stream.avail_in > 0 || compressed_size > 0) {
@@ -221,8 +221,8 @@ absl::Status RecordWriter::CreateTemporaryFile() {
   if (exists && access(target_path_.c_str(), W_OK) != 0) {
     return absl::ErrnoToStatus(errno, problem);
   }
-  // The names of files that another writer of this process, or a dead process,
-  // left are skipped.
+  // Skips names of files left by another writer of this process or by a dead
+  // process.
   constexpr int kMaxAttempts = 1000;
   for (int i = 0; i < kMaxAttempts; ++i) {
     temporary_path_ = absl::StrCat(target_path_, ".tmp-", getpid(), "-", i);
@@ -251,7 +251,8 @@ absl::Status RecordWriter::WriteBytes(const std::string& bytes) {
   return absl::OkStatus();
 }
 
-// zlib's gzip header has no time stamp by default, so this is deterministic.
+// zlib's gzip header has no time stamp by default, so the output is
+// deterministic.
 std::string RecordWriter::Deflate(const std::string& record) {
   z_stream& stream = *stream_;
   CHECK_EQ(deflateReset(&stream), Z_OK);
@@ -278,7 +279,8 @@ absl::Status RecordWriter::WriteCompressed(const std::string& member) {
 absl::Status RecordWriter::Commit() {
   CHECK_GE(file_descriptor_, 0) << "committed twice";
   const std::string problem = absl::StrCat("cannot write ", path_);
-  // Without it, a crash of the machine could leave the new name with no data.
+  // Without it, a crash of the machine could leave an empty file under the new
+  // name.
   if (fsync(file_descriptor_) != 0 && errno != EINVAL) {
     return absl::ErrnoToStatus(errno, problem);
   }

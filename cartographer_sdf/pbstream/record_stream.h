@@ -3,7 +3,7 @@
 
 // The container of a .pbstream: an 8-byte magic number, then records, each an
 // 8-byte little-endian length and a gzip member of that length. Records are
-// handed over decompressed and undecoded.
+// passed on decompressed but not decoded.
 
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_RECORD_STREAM_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_RECORD_STREAM_H_
@@ -22,7 +22,7 @@ struct z_stream_s;
 
 namespace cartographer_sdf {
 
-// Made once per file: most records are tiny, and a stream is not.
+// Created once per file: most records are tiny, and a stream is not.
 using ZlibStream = std::unique_ptr<z_stream_s, void (*)(z_stream_s*)>;
 
 class RecordReader {
@@ -31,19 +31,19 @@ class RecordReader {
   [[nodiscard]] static absl::StatusOr<RecordReader> Open(
       const std::string& path);
 
-  // Reads the next record; false at the end of the file, an error where the
-  // file is truncated or corrupted. Memory grows with what was decompressed,
-  // not with what a length claims.
+  // Reads the next record; false at the end of the file, an error if the file
+  // is truncated or corrupted. Memory grows with the decompressed size, not
+  // with the length that a record claims.
   [[nodiscard]] absl::StatusOr<bool> Read(std::string* record);
-  // The record read last as the file has it: its gzip member.
+  // The last record read, as in the file: its gzip member.
   [[nodiscard]] const std::string& compressed() const { return compressed_; }
 
   // Bytes read and size of the file.
   [[nodiscard]] int64_t position() const { return position_; }
   [[nodiscard]] int64_t size() const { return size_; }
   [[nodiscard]] const std::string& path() const { return path_; }
-  // The error that the record read last, counted from 1, has a problem:
-  // "PATH is corrupted: record 17 PROBLEM".
+  // Returns an error about the last record read, counted from 1: "PATH is
+  // corrupted: record 17 PROBLEM".
   [[nodiscard]] absl::Status Corrupted(absl::string_view problem) const;
 
  private:
@@ -62,23 +62,23 @@ class RecordReader {
   int num_records_ = 0;
 };
 
-// Writes to a temporary file beside `path`; Commit() renames it. Destroyed
-// without a commit, it leaves nothing behind. The same records give the same
+// Writes to a temporary file beside `path`; Commit() renames it. Without a
+// commit, the destructor leaves nothing behind. The same records give the same
 // bytes.
 class RecordWriter {
  public:
-  // Refuses what it could not replace: a directory, a device, a file that is
-  // write-protected. A symbolic link is followed.
+  // Fails if the target cannot be replaced: a directory, a device, a
+  // write-protected file. Follows symbolic links.
   [[nodiscard]] static absl::StatusOr<RecordWriter> Open(
       const std::string& path);
   RecordWriter(RecordWriter&& other) noexcept;
   RecordWriter& operator=(RecordWriter&&) = delete;
   ~RecordWriter();
 
-  // After an error, or after Commit(), the writer is done with.
+  // After an error or Commit(), the writer must not be used any more.
   [[nodiscard]] absl::Status Write(const std::string& record);
-  // A record as RecordReader::compressed() has it, which need not be compressed
-  // anew.
+  // Writes a record from RecordReader::compressed() without compressing it
+  // again.
   [[nodiscard]] absl::Status WriteCompressed(const std::string& member);
   [[nodiscard]] absl::Status Commit();
 
@@ -89,7 +89,7 @@ class RecordWriter {
   [[nodiscard]] absl::Status WriteBytes(const std::string& bytes);
   [[nodiscard]] std::string Deflate(const std::string& record);
 
-  // As given, for messages; and what it stands for once links are followed.
+  // The path as given, for messages, and the path with links resolved.
   std::string path_;
   std::string target_path_;
   std::string temporary_path_;

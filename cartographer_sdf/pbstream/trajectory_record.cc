@@ -17,8 +17,8 @@ using ::google::protobuf::UnknownField;
 using ::google::protobuf::UnknownFieldSet;
 using Kind = proto::SerializedData::DataCase;
 
-// Sets the number at path[depth...] of a message's bare fields, each of which
-// keeps its place. A message within that occurs twice is one message in two
+// Sets the number at path[depth...] of a message's raw fields, each of which
+// keeps its place. A nested message that occurs twice is one message in two
 // parts, of which the later one counts: both are set. A field of another type
 // is unknown to every reader.
 void SetNumber(const std::vector<int>& path, const size_t depth,
@@ -43,7 +43,7 @@ void SetNumber(const std::vector<int>& path, const size_t depth,
     is_set = true;
   }
   if (is_set) return;
-  // A number that is zero is absent; it belongs at the beginning.
+  // A zero is not stored; the field belongs at the beginning.
   UnknownFieldSet with_number;
   if (is_leaf) {
     with_number.AddVarint(path[depth], 0);
@@ -89,7 +89,7 @@ std::string WithTrajectory(const std::string& record,
   UnknownFieldSet fields;
   CHECK(fields.ParseFromString(record));
   const Kind kind = data.data_case();
-  // Submaps and nodes have it in an id of their own.
+  // Submaps and nodes store it in a nested id.
   const std::vector<int> path = kind == Kind::kSubmap || kind == Kind::kNode
                                     ? std::vector<int>{kind, 1, 1}
                                     : std::vector<int>{kind, 1};

@@ -13,11 +13,11 @@
 namespace cartographer_sdf {
 namespace {
 
-// So many grids are described at once: enough for the threads of a large
-// machine, little memory.
+// Number of grids described at once: enough for the threads of a large machine,
+// and little memory.
 constexpr size_t kBatchSize = 16;
 
-// The map without places.
+// Reads the map without places.
 absl::StatusOr<DescribedMap> ReadAndVisit(const std::string& path,
                                           const SubmapCallback& on_submap,
                                           const PointClouds wanted,
@@ -125,7 +125,7 @@ std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
     driven[id] = distance;
     previous = {id, pose};
   }
-  // A submap is where its nodes are in the middle.
+  // The distance of a submap is the mean over its nodes.
   std::map<SubmapId, std::pair<double, int>> sums;
   for (const Constraint& constraint : state.pose_graph.constraints) {
     if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;

@@ -19,8 +19,8 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr char kKind[] = "cartographer_sdf places";
-// To be raised with every change of the format *or of what describing a submap
-// yields*.
+// Increment it with every change of the format *or of the description of
+// submaps*.
 constexpr int kVersion = 1;
 
 absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
@@ -28,7 +28,7 @@ absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
   const auto refuse = [&path](const absl::string_view problem) {
     return absl::FailedPreconditionError(absl::StrCat(path, " ", problem));
   };
-  if (header.kind() != kKind) return refuse("is no file of places");
+  if (header.kind() != kKind) return refuse("is not a place file");
   if (header.version() != kVersion) {
     return refuse(absl::StrCat("has places of version ", header.version(),
                                ", not ", kVersion));
@@ -63,7 +63,7 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadRecords(
     }
     const SubmapId id = place->id;
     if (!places.emplace(id, *std::move(place)).second) {
-      return reader->Corrupted("has a place that was there before");
+      return reader->Corrupted("has a duplicate place");
     }
   }
 }
@@ -72,9 +72,9 @@ using ProtoPlace = proto::place_index::Place;
 
 constexpr int kBytesPerCell = 4;
 constexpr int kNumbersPerFeature = 5;
-// Along either axis; 1.6 km at 5 cm.
+// Bound on the number of cells along either axis; 1.6 km at 5 cm.
 constexpr int kMaxNumCells = 1 << 15;
-// Larger coordinates are no submap's [m].
+// Bound on coordinates within a submap [m].
 constexpr double kMaxStoredCoordinate = 1e5;
 
 bool IsCoordinate(const double value) {
@@ -98,8 +98,8 @@ bool FromProto(const proto::place_index::Pose& proto, Rigid2* const pose) {
   return true;
 }
 
-// What the distances of the cells before, along x and along y, let expect of
-// cell k: that the field is a plane.
+// Predicts the distance of cell k from the cells before it along x and along y,
+// assuming that the field is a plane.
 uint16_t ExpectedDistance(const SurfaceCell* const cells, const size_t width,
                           const size_t k) {
   const auto at = [cells](const size_t index) {
@@ -112,7 +112,7 @@ uint16_t ExpectedDistance(const SurfaceCell* const cells, const size_t width,
   return static_cast<uint16_t>(left + below - both);
 }
 
-// Small numbers of either sign become small numbers.
+// Maps small numbers of either sign to small numbers.
 uint16_t ZigZag(const uint16_t value) {
   return static_cast<uint16_t>(value << 1 ^ (value & 0x8000 ? 0xffff : 0));
 }
@@ -121,7 +121,7 @@ uint16_t UnZigZag(const uint16_t value) {
 }
 
 void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
-  // Fails to compile where a member is new, and would be lost.
+  // Fails to compile if a new member would be lost.
   const auto& [geometry, cells, walls, observed_points, area, poses] = surface;
   static_assert(sizeof(SurfaceCell) == kBytesPerCell);
   proto->set_num_cells_x(geometry.size.x());
@@ -170,7 +170,7 @@ void EncodeFeatures(const FeatureSet& set, ProtoPlace* const proto) {
       set.descriptors.data(), set.descriptors.data() + set.descriptors.size());
 }
 
-// Each returns what is wrong, or nothing.
+// Each returns the problem, or an empty string.
 std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
   const int width = proto.num_cells_x(), height = proto.num_cells_y();
   if (width < 1 || height < 1 || width > kMaxNumCells ||
@@ -196,7 +196,7 @@ std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
     const auto byte = [&](const size_t plane) {
       return static_cast<uint8_t>(bytes[plane * n + k]);
     };
-    if (byte(3) > 1) return "has a cell that is neither observed nor not";
+    if (byte(3) > 1) return "has a cell with an invalid observed flag";
     const uint16_t difference =
         UnZigZag(static_cast<uint16_t>(byte(0) | byte(1) << 8));
     const uint16_t distance = static_cast<uint16_t>(
@@ -338,7 +338,7 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadPlaces(const std::string& path,
   if (!has_record.ok()) return has_record.status();
   proto::place_index::Header header;
   if (!*has_record || !header.ParseFromString(record)) {
-    return reader->Corrupted("is no header of a file of places");
+    return reader->Corrupted("is not the header of a place file");
   }
   const absl::Status status = CheckHeader(path, key, header);
   if (!status.ok()) return status;
@@ -365,7 +365,7 @@ std::string EncodePlace(const Place& place) {
 absl::StatusOr<Place> DecodePlace(const std::string& bytes) {
   ProtoPlace proto;
   if (!proto.ParseFromString(bytes)) {
-    return absl::DataLossError("is no place");
+    return absl::DataLossError("is not a place");
   }
   if (proto.trajectory() < 0 || proto.index() < 0) {
     return absl::DataLossError("has a place with a negative number");

@@ -17,8 +17,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// One false closure can make up nearly all of the cost (1e7); what is left must
-// still settle to a millimetre, which costs 1e-1.
+// A single false closure can make up nearly all of the cost (1e7); the rest
+// must still converge to a millimetre, which costs 1e-1.
 constexpr double kFunctionTolerance = 1e-9;
 
 class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
@@ -46,7 +46,7 @@ class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
 };
 
 // Moves each landmark rigidly with the node that was nearest to it in the
-// plane; of equally near ones the first.
+// plane; on ties, the first.
 void MoveLandmarks(const std::map<NodeId, Node>& old_nodes,
                    PoseGraph* const pose_graph) {
   for (auto& [id, T_map_landmark] : pose_graph->landmark_poses) {
@@ -85,11 +85,11 @@ void SetPoses(const SpaGraph& graph, PoseGraph* const pose_graph) {
 }
 
 constexpr int kMinNumSteps = 20;
-// Odometry that on average differs less from local SLAM is uninformative [m],
-// [rad].
+// Odometry whose mean difference from local SLAM is smaller is uninformative
+// [m], [rad].
 constexpr double kMinTranslationDifference = 1e-5;
 constexpr double kMinRotationDifference = 1e-6;
-// Weights that differ more than this act as if the lesser were zero.
+// Weights whose lambda is closer to 0 or 1 act as if the smaller were zero.
 constexpr double kMinLambda = 1e-6;
 
 // Least squares of y = lambda * x.
@@ -101,7 +101,7 @@ struct Regression {
     xy += x * y;
     xx += x * x;
   }
-  // The weight beside one of `other` that explains the slope.
+  // Returns the weight that explains the slope, given a weight of `other`.
   [[nodiscard]] double Weight(const double other) const {
     const double lambda = std::min(xy / xx, 1. - kMinLambda);
     if (lambda < kMinLambda) return 0.;

@@ -3,7 +3,7 @@
 
 // Cartographer's 2D pose graph as plain data. As in the host's optimisation
 // problem, the node frame is the *gravity-aligned* tracking frame: the file's
-// 3D pose times the inverse of the node's gravity alignment, projected to the
+// 3D pose times the inverse of the node's gravity alignment, projected onto the
 // plane. pbstream/ converts in both directions.
 
 #ifndef CARTOGRAPHER_SDF_POSE_GRAPH_POSE_GRAPH_H_
@@ -24,7 +24,7 @@
 
 namespace cartographer_sdf {
 
-// Cartographer's name of a node: a scan that passed the motion filter.
+// Identifies a node: a scan that passed the motion filter.
 struct NodeId {
   int trajectory = 0;
   int index = 0;
@@ -41,7 +41,7 @@ struct NodeId {
   }
 };
 
-// Points of a node's range data in its frame [m].
+// Points of a node's range data in the node frame [m].
 using PointCloud2 = std::vector<Eigen::Vector2f>;
 
 struct Node {
@@ -53,8 +53,8 @@ struct Node {
   // Takes the tracking frame to the gravity-aligned frame. With IMU or
   // odometry it holds the yaw too.
   Eigen::Quaterniond gravity_alignment = Eigen::Quaterniond::Identity();
-  // (previous node of the trajectory <- node) by odometry, where both times
-  // are covered by it.
+  // (previous node of the trajectory <- node) by odometry, if odometry covers
+  // both times.
   std::optional<Rigid2> T_previous_node_by_odometry;
 };
 
@@ -79,7 +79,7 @@ struct Constraint {
   Tag tag = Tag::kIntraSubmap;
 };
 
-// What odometry between consecutive nodes weighs in an optimisation.
+// Weights of the odometry between consecutive nodes.
 struct OdometryWeights {
   double translation = 0.;
   double rotation = 0.;
@@ -90,8 +90,8 @@ struct PoseGraph {
   std::map<NodeId, Node> nodes;
   std::vector<Constraint> constraints;
   std::map<std::string, Rigid3> landmark_poses;  // (map <- landmark)
-  // Of trajectories for which not those of the optimisation's options hold, as
-  // where maps of different makers were joined. Not in the file.
+  // Trajectories whose weights differ from those of the optimisation options,
+  // as where maps of different origin were joined. Not stored in the file.
   std::map<int, OdometryWeights> odometry_weights;
 };
 

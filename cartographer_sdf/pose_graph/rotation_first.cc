@@ -11,7 +11,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// It is a start, not the answer.
+// Coarse: the result is only an initial guess.
 constexpr double kRotationTolerance = 1e-2;
 constexpr int kMaxNumIterations = 50;
 

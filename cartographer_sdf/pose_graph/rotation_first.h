@@ -12,18 +12,18 @@
 
 namespace cartographer_sdf {
 
-// Poses near a minimum of the graph's cost that hardly depend on the given
-// ones: first all rotations, relaxed to 2-vectors of any length ("chordal",
-// [Carlone2015]), then all translations with these rotations. Both problems are
-// convex, so no start is too far and no angle wraps.
+// Computes poses near a minimum of the graph's cost, almost independently of
+// the given ones: first all rotations, relaxed to 2-vectors of any length
+// ("chordal", [Carlone2015]), then all translations with these rotations. Both
+// problems are convex, so any start will do and no angle wraps.
 //
-// A heuristic: rotations are not told what translations know of them, and of a
-// rotation that the measurements spread evenly over half a turn the relaxed
-// vectors vanish. False robust edges, of which a few bend the rotations, can
-// make it worse than the given poses: compare the costs.
+// A heuristic: the rotations ignore the information in the translations, and
+// where the measurements of a rotation spread evenly over half a turn, the
+// relaxed vectors vanish. A few false robust edges bend the rotations and can
+// make the result worse than the given poses: compare the costs.
 //
-// None where the solver fails. Constant poses stay; about ten iterations of a
-// third of the price of the full problem's.
+// None if the solver fails. Constant poses stay fixed. Takes about ten
+// iterations, each at a third of the cost of one of the full problem.
 [[nodiscard]] std::optional<std::vector<Eigen::Vector3d>> RotationFirstPoses(
     const SpaGraph& graph, double huber_scale);
 

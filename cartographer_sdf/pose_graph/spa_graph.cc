@@ -43,8 +43,8 @@ OdometryWeights WeightsOf(const OptimizationOptions& options,
           options.odometry_rotation_weight};
 }
 
-// Between nodes that follow each other with no trimmed one between; of frozen
-// trajectories, as in the host, none.
+// Adds edges between consecutive nodes, none across a trimmed node; as in the
+// host, none for frozen trajectories.
 void AddConsecutiveNodes(const OptimizationOptions& options,
                          const PoseGraph& pose_graph, const int first_index,
                          SpaGraph* const graph) {
@@ -77,7 +77,7 @@ void AddConsecutiveNodes(const OptimizationOptions& options,
   }
 }
 
-// Holds one pose of each connected component that has no constant one.
+// Fixes one pose of each connected component that has no constant one.
 void FixGauge(SpaGraph* const graph) {
   std::vector<int> parents(graph->poses.size());
   std::iota(parents.begin(), parents.end(), 0);
@@ -149,7 +149,8 @@ SpaError EvaluateSpaError(const SpaEdge& edge, const Eigen::Vector3d& start,
       -w_t * s, w_t * c, 0.,                   //
       0., 0., w_r;
   error.jacobian_start = -error.jacobian_end;
-  // The derivative of R^T by the angle turns p_start by -90 degrees.
+  // The derivative of R^T with respect to the angle turns p_start by -90
+  // degrees.
   error.jacobian_start(0, 2) = w_t * p_start.y();
   error.jacobian_start(1, 2) = -w_t * p_start.x();
   return error;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The least-squares problem behind a pose graph, flat: poses and relative
+// The least-squares problem of a pose graph, flattened: poses and relative
 // measurements between them ("sparse pose adjustment" [Konolige2010], with the
 // measurements that Cartographer uses in 2D).
 
@@ -18,7 +18,8 @@
 
 namespace cartographer_sdf {
 
-// A measured pose of `end` in the frame of `start`, both indices of poses.
+// A measured pose of `end` in the frame of `start`, both indices into
+// SpaGraph::poses.
 struct SpaEdge {
   int start = 0;
   int end = 0;
@@ -33,8 +34,8 @@ struct SpaGraph {
   // (x, y, yaw) in the map frame: the submaps in order, then the nodes. The yaw
   // is not normalised.
   std::vector<Eigen::Vector3d> poses;
-  // Poses that stay: those of frozen trajectories and, in each connected
-  // component without one, the first submap (a node where there is none).
+  // Fixed poses: those of frozen trajectories and, in each connected component
+  // without one, the first submap (the first node if it has no submap).
   std::vector<bool> constant;
   std::vector<SpaEdge> edges;
 };
@@ -43,12 +44,12 @@ struct SpaGraph {
                                      const std::set<int>& frozen_trajectories,
                                      const PoseGraph& pose_graph);
 
-// Where an edge's end lies, compared with the measurement: the residual is
+// Deviation of an edge's end from the measurement: the residual is
 // (w_t * (R_start^T (t_end - t_start) - t_measured),
 //  w_r * (yaw_end - yaw_start - yaw_measured), in w_r * (-pi, pi]).
 struct SpaError {
   Eigen::Vector3d residual;
-  // Derivatives of the residual by either pose.
+  // Derivatives of the residual with respect to each pose.
   Eigen::Matrix3d jacobian_start;
   Eigen::Matrix3d jacobian_end;
 };
@@ -56,7 +57,7 @@ struct SpaError {
                                         const Eigen::Vector3d& start,
                                         const Eigen::Vector3d& end);
 
-// Half the sum of squared residuals, of robust ones under the Huber loss.
+// Returns half the sum of squared residuals, robust ones under the Huber loss.
 [[nodiscard]] double SpaCost(const SpaGraph& graph, double huber_scale);
 
 }  // namespace cartographer_sdf

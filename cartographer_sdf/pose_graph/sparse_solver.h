@@ -15,8 +15,9 @@ namespace cartographer_sdf {
 // A chain of 1e4 stiff links bends 1e10 times as easily as one link. Damping
 // must lie below that, or each step moves a far end only a little.
 constexpr double kInitialTrustRegionRadius = 1e12;
-// Only the function tolerance is to end it: poses of a large graph differ in
-// size from their changes by more than the solver's default for either.
+// Only the function tolerance should end the iteration: in a large graph, poses
+// and their changes differ in size by more than the solver's defaults for the
+// other two allow.
 constexpr double kNegligibleTolerance = 1e-15;
 
 // Single-threaded Levenberg-Marquardt until the cost changes by less than the
@@ -25,8 +26,8 @@ constexpr double kNegligibleTolerance = 1e-15;
     const int max_num_iterations, const double function_tolerance) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  // As fast as SuiteSparse on these graphs, and free of BLAS, whose rounding
-  // depends on its number of threads.
+  // As fast as SuiteSparse on these graphs, and without BLAS, whose rounding
+  // depends on its thread count.
   if (ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE)) {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   }
@@ -40,10 +41,10 @@ constexpr double kNegligibleTolerance = 1e-15;
   return options;
 }
 
-// Minimises the residuals of the graph's edges, of robust ones under the Huber
-// loss, over a vector for each pose, of which those of constant poses stay.
-// `make_cost` takes an edge to a new ceres::CostFunction of the vectors of its
-// start and end. Without a usable solution the vectors stay as given.
+// Minimises the residuals of the graph's edges, robust ones under the Huber
+// loss, over one vector per pose; vectors of constant poses stay fixed.
+// `make_cost` returns a new ceres::CostFunction for an edge, of the vectors of
+// its start and end. Without a usable solution the vectors stay unchanged.
 template <typename Vector, typename MakeCost>
 [[nodiscard]] ceres::Solver::Summary SolveSparse(
     const ceres::Solver::Options& options, const SpaGraph& graph,

@@ -32,23 +32,23 @@ constexpr int kNumOdometryFields = 4;  // with the time
 constexpr int kMaxBeams = 100000;
 // Lines of kMaxBeams ranges with a few digits each.
 constexpr size_t kMaxLineLength = size_t{1} << 21;
-// Of all scans together: 2 GB, two days of a laser of 180 beams at 10 Hz.
+// For all scans together: 2 GB, two days of a 180-beam laser at 10 Hz.
 constexpr size_t kMaxRanges = size_t{1} << 28;
-// No robot on earth is farther from where it started [m].
+// No robot on Earth is farther from its start [m].
 constexpr double kMaxLogCoordinate = 1e7;
 // No robot with a laser drives farther between two scans [m]; Cartographer
-// would make a submap of the size of the jump.
+// would create a submap the size of the jump.
 constexpr double kMaxStep = 20.;
 constexpr double kMaxLogTime = 1e11;
-// A number of scans beyond this is the seconds of a date.
+// A whole number above this is a date in seconds, not a scan number.
 constexpr double kMaxScanNumber = 1e8;
 constexpr double kTimeOfFirstScan = 1e9;
-// Shorter, Cartographer's ticks of 0.1 us would fall together.
+// At shorter intervals, times would coincide in Cartographer's 0.1 us ticks.
 constexpr double kMinSecondsBetweenScans = 1e-5;
 
 using GzipFile = std::unique_ptr<gzFile_s, int (*)(gzFile_s*)>;
 
-// Lines of a file that may be compressed. Memory is one line's.
+// Reads lines of a file that may be compressed, one line in memory at a time.
 class LineReader {
  public:
   static absl::StatusOr<LineReader> Open(const std::string& path) {
@@ -136,13 +136,13 @@ absl::StatusOr<std::vector<double>> ParseNumbers(
     if (!absl::SimpleAtod(fields[k], &numbers[k]) ||
         !std::isfinite(numbers[k])) {
       return reader.Error(absl::StrCat("field of ", fields[k].size(),
-                                       " characters is no finite number"));
+                                       " characters is not a finite number"));
     }
   }
   return numbers;
 }
 
-// Its pose and the time.
+// Parses the odometry pose and the time.
 absl::Status ParseOdometry(const LineReader& reader,
                            const absl::string_view* const fields,
                            LaserScan* const scan) {
@@ -152,12 +152,12 @@ absl::Status ParseOdometry(const LineReader& reader,
   const double x = (*numbers)[0], y = (*numbers)[1], theta = (*numbers)[2];
   if (std::max({std::abs(x), std::abs(y), std::abs(theta)}) >
       kMaxLogCoordinate) {
-    return reader.Error("the odometry is off this world");
+    return reader.Error("the odometry is out of range");
   }
   scan->T_odometry_robot = Rigid2(x, y, theta);
   scan->time = (*numbers)[3];
   if (scan->time < 0. || scan->time > kMaxLogTime) {
-    return reader.Error("the time is no time");
+    return reader.Error("the time is out of range");
   }
   return absl::OkStatus();
 }
@@ -170,7 +170,7 @@ absl::StatusOr<LaserScan> ParseScan(const LineReader& reader,
   if (fields.size() < 2 || !absl::SimpleAtoi(fields[1], &num_beams) ||
       num_beams < 1 || num_beams > kMaxBeams) {
     return reader.Error(
-        absl::StrCat("the number of beams is none from 1 to ", kMaxBeams));
+        absl::StrCat("the number of beams must be from 1 to ", kMaxBeams));
   }
   const int num_expected = 2 + num_beams + kNumFieldsAfterRanges;
   if (static_cast<int>(fields.size()) != num_expected) {
@@ -185,17 +185,17 @@ absl::StatusOr<LaserScan> ParseScan(const LineReader& reader,
   scan.ranges = *std::move(ranges);
   for (double& range : scan.ranges) {
     if (range < 0.) return reader.Error("a range is negative");
-    // More is no return either.
+    // A larger range is no return either.
     range = std::min(range, kMaxLogCoordinate);
   }
-  // The laser's pose comes before odometry's.
+  // The laser pose precedes the odometry pose.
   const absl::Status status =
       ParseOdometry(reader, &fields[2 + num_beams + 3], &scan);
   if (!status.ok()) return status;
   return scan;
 }
 
-// True where the times only count the scans.
+// Returns whether the times are merely scan numbers.
 bool AreScanNumbers(const std::vector<LaserScan>& scans) {
   for (size_t i = 0; i < scans.size(); ++i) {
     const double time = scans[i].time;
@@ -260,7 +260,7 @@ absl::Status CheckAgainstLast(const LineReader& reader,
   return absl::OkStatus();
 }
 
-// The keyword as a word of its own.
+// Returns whether the line begins with the keyword as a whole word.
 bool IsScan(const std::string& line) {
   return absl::StartsWith(line, kScanKeyword) &&
          (line.size() == kScanKeyword.size() ||
@@ -293,7 +293,7 @@ std::string Validate(const CarmenLogOptions& options) {
       !(*options.field_of_view > 0. && *options.field_of_view <= 2. * M_PI)) {
     return "field_of_view must be above 0 and at most a full turn";
   }
-  // 1e-4 s: 10 kHz; 1e4 s: a scan in three hours.
+  // 1e-4 s: 10 kHz; 1e4 s: one scan in about three hours.
   if (!(options.seconds_per_scan >= 1e-4 && options.seconds_per_scan <= 1e4)) {
     return "seconds_per_scan must be from 1e-4 to 1e4";
   }
@@ -310,7 +310,7 @@ absl::StatusOr<Recording> ReadCarmenLog(const std::string& path,
   if (scans->empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat(path, " has no line that begins with ", kScanKeyword,
-                     ", so it is no CARMEN log or has no laser"));
+                     ", so it is not a CARMEN log or has no laser"));
   }
   Recording recording;
   recording.scans = *std::move(scans);

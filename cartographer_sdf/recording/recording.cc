@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxSecondsBetweenSamples = 0.05;
 constexpr int kMinSamples = 4;
 constexpr int kMaxSamples = 1200;
-// Of binary fractions, so that 0.2 s are four samples and not five.
+// Absorbs binary rounding, so that 0.2 s gives four samples and not five.
 constexpr double kRounding = 1e-6;
 
 }  // namespace

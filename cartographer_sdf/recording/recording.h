@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a robot with wheels and a planar laser recorded, as plain data.
+// A recording of a wheeled robot with a planar laser, as plain data.
 
 #ifndef CARTOGRAPHER_SDF_RECORDING_RECORDING_H_
 #define CARTOGRAPHER_SDF_RECORDING_RECORDING_H_
@@ -13,37 +13,39 @@
 namespace cartographer_sdf {
 
 struct LaserScan {
-  // Seconds of Unix time.
+  // Unix time [s].
   double time = 0.;
-  // Where the wheels' odometry saw the robot; drifts.
+  // Robot pose by wheel odometry; drifts.
   Rigid2 T_odometry_robot;
-  // Of the beams in their order, not negative. Where nothing was hit, laser
-  // scanners report a range beyond their reach.
+  // One per beam, in beam order, non-negative [m]. Where nothing was hit, laser
+  // scanners report a range beyond their maximum.
   std::vector<double> ranges;
 };
 
 struct Recording {
-  // Direction of the first beam against the robot's, and from one beam to the
-  // next [rad]. The laser is taken to be in the middle of the robot.
+  // Direction of the first beam in the robot frame, and the angle between
+  // consecutive beams [rad]. The laser is assumed to be at the centre of the
+  // robot.
   double first_angle = 0.;
   double angle_increment = 0.;
-  // In order of time, no two at the same time; all of one number of beams.
+  // In time order, with distinct times; all have the same number of beams.
   std::vector<LaserScan> scans;
-  // Scans of the file that are not here, because they were not later than the
-  // ones before.
+  // Scans of the file that were dropped because they were not later than their
+  // predecessors.
   int num_dropped_scans = 0;
-  // The times are the recording's own; else its scans were only counted.
+  // Whether the file has measured times; if false, they were derived from scan
+  // numbers.
   bool has_clock = false;
 };
 
-// The scans from `start` seconds after the first one on, for `duration`
+// Returns the scans from `start` seconds after the first one, for `duration`
 // seconds.
 [[nodiscard]] Recording Cut(const Recording& recording, double start,
                             double duration);
 
-// Cartographer's pose extrapolator expects wheels and gyroscope to report far
-// more often than the laser. Where a recording has odometry with its scans
-// only, what lies between is interpolated.
+// Cartographer's pose extrapolator expects wheel odometry and a gyroscope at a
+// far higher rate than the laser. Where a recording has odometry only at its
+// scans, MotionBetween interpolates.
 struct MotionSample {
   double time = 0.;
   Rigid2 T_odometry_robot;
@@ -51,13 +53,14 @@ struct MotionSample {
   double yaw_rate = 0.;
 };
 
-// From after `first` to the time of `second`, evenly, at a constant velocity
-// and yaw rate, at most 0.05 s and a quarter of the interval apart. In
-// intervals of more than a minute there are no more samples than in one.
+// Returns evenly spaced samples from after `first` up to and including
+// `second`, at constant velocity and yaw rate, at most 0.05 s and a quarter of
+// the interval apart. Intervals of more than a minute get no more samples than
+// one minute.
 [[nodiscard]] std::vector<MotionSample> MotionBetween(const LaserScan& first,
                                                       const LaserScan& second);
 
-// The length of the odometry's path [m] until each scan.
+// Returns the length of the odometry path [m] up to each scan.
 [[nodiscard]] std::vector<double> MetersDriven(const Recording& recording);
 
 }  // namespace cartographer_sdf

@@ -32,9 +32,9 @@ double RankingScore(const RankingOptions& options,
       MeasureAgreement(tolerance, reference, query.walls, T_reference_query);
   const DirectedAgreement backward = MeasureAgreement(
       tolerance, query, reference.walls, T_reference_query.Inverse());
-  // Points that the other has not seen neither speak for nor against the pose,
-  // but a pose at which little is seen by both says little: a few more points
-  // in the denominator.
+  // Points that the other submap has not observed neither support nor
+  // contradict the pose, but a pose at which few points are observed by both is
+  // weak evidence: hence the extra points in the denominator.
   const double num_seen = forward.num_points + backward.num_points;
   const double regularized = num_seen + 0.1 * num_points;
   return (forward.hits + backward.hits -
@@ -48,8 +48,7 @@ struct Ranked {
   Rigid2 T_reference_query;
 };
 
-// Best first; equal ones in an order that is theirs, whatever the order in
-// which they came.
+// Best first; ties are broken by the pose, whatever the input order.
 bool IsBetter(const Ranked& a, const Ranked& b) {
   const auto key = [](const Ranked& ranked) {
     const Rigid2& pose = ranked.T_reference_query;
@@ -59,7 +58,8 @@ bool IsBetter(const Ranked& a, const Ranked& b) {
   return key(a) < key(b);
 }
 
-// Best first, without those below the least score and near duplicates.
+// Returns the best, best first, without scores below the minimum and near
+// duplicates.
 std::vector<Ranked> KeepBest(std::vector<Ranked> ranked, const int count,
                              const double min_score,
                              const Eigen::Vector2d& centroid) {
@@ -82,7 +82,7 @@ Rigid2 TurnAbout(const Rigid2& T_reference_query, const Eigen::Vector2d& at,
                 turned);
 }
 
-// Those whose score is worse than that of the first by more than the gap.
+// Drops those whose score is worse than the first by more than the gap.
 void DropWorse(const double gap, std::vector<Ranked>* const ranked) {
   while (!ranked->empty() &&
          ranked->back().score < ranked->front().score - gap) {
@@ -104,7 +104,7 @@ class FineRanking {
                          options_.num_fine_points),
             T_reference_query};
   }
-  // The pose itself and its turned copies.
+  // Returns the pose itself and its turned copies.
   [[nodiscard]] std::vector<Ranked> Polished(const Ranked& unpolished) const {
     std::vector<Ranked> ranked = {unpolished};
     for (const double rotation : kPolishRotations) {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Ranks many pose hypotheses by how well walls and free space agree under each,
-// on few wall points first and on more for the survivors; the best are worth
-// registering.
+// Ranks many pose hypotheses by the agreement of walls and free space; the best
+// are worth registering.
 
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_HYPOTHESIS_RANKING_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_HYPOTHESIS_RANKING_H_
@@ -23,33 +22,33 @@ struct RankingOptions {
   // Hypotheses that reach the fine ranking, and those that are refined.
   int num_coarse_survivors = 25;
   int num_refined = 8;
-  // The tolerance of both: hypotheses are this wrong [m].
+  // Tolerance of both rankings: hypotheses are this inaccurate [m].
   double hit_distance_meters = 0.3;
   double contradiction_distance_meters = 0.5;
-  // Contradictions count so many times as much as hits.
+  // Weight of a contradiction relative to a hit.
   double contradiction_weight = 2.;
   // A hypothesis with a lower (hits - weight * contradictions) / points is
   // dropped. Larger: faster, less recall.
   double min_coarse_score = 0.2;
   double min_fine_score = 0.45;
   // Hypotheses that score worse than the best one by more than this are not
-  // refined: they can be neither right nor rivals.
+  // refined: they can be neither correct nor rivals.
   double max_fine_score_gap = 0.25;
 };
 [[nodiscard]] std::string Validate(const RankingOptions& options);
 
-// The best hypotheses, polished in rotation; best first, and no two nearly the
-// same at `centroid`, that of the query's observed area [m, query frame].
-// Independent of the order of the hypotheses. Heuristic.
+// Returns the best hypotheses, polished in rotation; best first, and no two
+// nearly the same at `centroid`, the centroid of the query's observed area [m,
+// query frame]. Independent of the order of the hypotheses. Heuristic.
 [[nodiscard]] std::vector<Rigid2> RankHypotheses(
     const RankingOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query,
     const Eigen::Vector2d& centroid);
 
-// The pose, or the pose turned by a few degrees about `centroid` [m, query
-// frame], whichever agrees best: a guess is off by some degrees, beyond the
-// reach of registration at the far ends of a submap.
+// Returns the pose, or the pose turned by a few degrees about `centroid` [m,
+// query frame], whichever agrees best: guesses are off by some degrees, beyond
+// the reach of registration at the far ends of a submap.
 [[nodiscard]] Rigid2 PolishRotation(const RankingOptions& options,
                                     const SurfaceModel& reference,
                                     const SurfaceModel& query,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Judges the evidence of a pair at a pose: a score, the log-odds of the pose
-// being right, and a verdict with its reason.
+// being correct, and a verdict with its reason.
 
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_JUDGEMENT_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_JUDGEMENT_H_
@@ -16,9 +16,9 @@ namespace cartographer_sdf {
 
 enum class Verdict {
   kAccepted,
-  kTooLittleOverlap,  // next to nothing was observed by both
+  kTooLittleOverlap,  // both observed too little in common
   kContradicted,      // walls of one stand in free space of the other
-  kUnlikely,          // too little agrees
+  kUnlikely,          // too little agreement
   kDegenerate,        // walls face one way: the pose could slide along them
   kAmbiguous,         // another pose is as good
 };
@@ -40,24 +40,25 @@ struct ScoreWeights {
 
 struct JudgementOptions {
   ScoreWeights score_weights;
-  // Least area observed by both [m^2].
+  // Least area observed by both submaps [m^2].
   double min_overlap_area = 10.;
-  // Largest ratio of contradicting wall points, the worse of both directions.
+  // Largest ratio of contradicting wall points, in the worse direction.
   double max_contradiction_ratio = 0.10;
-  // Least smaller eigenvalue of the scatter of wall normals, in [0, 0.5].
+  // Lower bound on the smaller eigenvalue of the scatter of wall normals, in
+  // [0, 0.5].
   double min_scatter_eigenvalue = 0.03;
-  // Least score; log-odds of being right.
+  // Least score; log-odds of being correct.
   double min_score = 3.;
-  // A distinct pose (1 m or 20 degrees away) whose score comes nearer than this
+  // A distinct pose (1 m or 20 degrees away) whose score is closer than this
   // makes the pair ambiguous; log-odds.
   double min_margin = 0.7;
 };
 [[nodiscard]] std::string Validate(const JudgementOptions& options);
 
-// The largest margin that counts; also the margin where a pose has no rival.
+// The margin is capped at this; also the margin of a pose without rivals.
 constexpr double kMaxMargin = 4.;
 
-// The terms of ScoreWeights without the bias, in their order, and their names.
+// The terms of ScoreWeights without the bias, in order, and their names.
 constexpr int kNumScoreTerms = 5;
 [[nodiscard]] std::array<const char*, kNumScoreTerms> ScoreTermNames();
 [[nodiscard]] std::array<double, kNumScoreTerms> ScoreTerms(
@@ -65,8 +66,8 @@ constexpr int kNumScoreTerms = 5;
 [[nodiscard]] double Score(const ScoreWeights& weights,
                            const PairEvidence& evidence, double margin);
 
-// The reason of the first test that fails, or accepted. `score` may be one that
-// knows more than the pair (neighbourhood.h).
+// Returns the reason of the first failed test, or kAccepted. `score` may
+// include evidence beyond the pair (neighbourhood.h).
 [[nodiscard]] Verdict Judge(const JudgementOptions& options,
                             const PairEvidence& evidence, double score,
                             double margin);

@@ -16,23 +16,23 @@
 namespace cartographer_sdf {
 namespace {
 
-// Odds of 0.4 and -0.08, as logarithms: those of the host's hits (0.55) and
-// misses (0.49), doubled. A part holds a fraction of the scans that make a wall
-// of a submap certain.
+// Log-odds of 0.4 and -0.08: those of the host's hits (0.55) and misses (0.49),
+// doubled. A part holds a fraction of the scans that make a wall of a submap
+// certain.
 constexpr double kHitProbability = 0.598688;
 constexpr double kMissProbability = 0.480011;
 
-// Registration converges from about half a metre and 6 degrees; it is started
-// from guesses around the given pose, this far off.
+// Registration converges from about half a metre and 6 degrees; guesses lie
+// around the given pose, this far off.
 constexpr double kGuessTranslation = 0.4;  // [m]
 constexpr double kGuessRotation = 0.06;    // [rad]
-// Farther than a guess and its convergence reach, a pose is chance.
+// A pose farther away than a guess and its convergence reach is chance.
 constexpr double kMaxTranslation = 1.5;  // [m]
 constexpr double kMaxRotation = 0.2;     // [rad]
-// A pose under which the parts hardly meet can't contradict.
+// A pose at which the parts hardly overlap cannot contradict.
 constexpr double kMinFractionOfPoints = 0.7;
 
-// Wall cells used of each part: nearly all that a part has.
+// Wall cells used of each part: nearly all.
 constexpr int kMaxRegisteredPoints = 1000;
 
 std::vector<std::optional<SurfaceModel>> DrawParts(
@@ -88,8 +88,8 @@ std::vector<Rigid2> Guesses(const Eigen::Vector2d& middle) {
   return guesses;
 }
 
-// Whether a registered pose moves a part far enough to be a tear, and not so
-// far that it is chance.
+// Returns whether a registered pose moves a part far enough to be a tear, and
+// not so far that it is chance.
 bool IsPlausibleMove(const TearOptions& options, const double translation,
                      const double rotation) {
   return translation <= kMaxTranslation && rotation <= kMaxRotation &&
@@ -104,7 +104,7 @@ bool IsClearlyBetter(const TearOptions& options, const PartAgreement& placed,
          registered.value - placed.value >= options.min_gain;
 }
 
-// The clearest tear between two parts, without their numbers.
+// Returns the clearest tear between two parts, without their numbers.
 std::optional<Tear> CompareParts(const TearOptions& options,
                                  const SurfaceModel& first,
                                  const SurfaceModel& second) {

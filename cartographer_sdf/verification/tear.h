@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Whether local SLAM tore a submap: slipped while it was built, so that walls
-// that were seen before and after stand in it twice. The scans are cut into
-// parts by their order; where two parts see the same walls but contradict each
-// other as placed, and agree once one of them is moved, the submap is torn.
+// Detects whether local SLAM tore a submap: slipped while building it, so that
+// walls seen before and after the slip appear in it twice. The scans are split
+// into parts by their order; if two parts see the same walls but contradict
+// each other as placed, and agree once one of them is moved, the submap is
+// torn.
 //
-// A heuristic, made to be right when it speaks. What no two parts have seen
-// can't contradict: a submap that is bent evenly, or whose scans before and
-// after the slip share no walls, counts as whole.
+// A heuristic that favours precision. Only parts that share walls can
+// contradict each other: a submap that is bent evenly, or whose scans before
+// and after the slip share no walls, counts as intact.
 
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_TEAR_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_TEAR_H_
@@ -22,25 +23,25 @@
 
 namespace cartographer_sdf {
 
-// Agreement is the ratio of hits less twice that of contradictions
-// (agreement.h), as ranking counts: 1 where all walls coincide.
+// Agreement is the ratio of hits minus twice that of contradictions
+// (agreement.h), as in the ranking: 1 if all walls coincide.
 struct TearOptions {
-  // Parts of equally many scans. More: finds slips near the ends, but fewer
-  // walls are seen by two parts.
+  // Number of parts with equally many scans. More: finds slips near the ends,
+  // but fewer walls are seen by two parts.
   int num_parts = 6;
-  // Cells of the grids that the parts are drawn into [m].
+  // Cell size of the grids that the parts are drawn into [m].
   double resolution_meters = 0.1;
-  // Points farther from the robot are left out [m].
+  // Points farther from the robot are ignored [m].
   double max_range_meters = 30.;
-  // Wall cells of two parts that lie where the other has observed; fewer say
-  // nothing.
+  // Least number of wall cells of two parts that lie where the other has
+  // observed; fewer are inconclusive.
   int min_num_points = 50;
-  // By how much a better pose must raise the agreement of two parts, and to
-  // what at least. Lower: finds smaller tears, and takes moved doors and
-  // people for some.
+  // Least gain in agreement of two parts by a better pose, and least agreement
+  // there. Lower: finds smaller tears, and mistakes moved doors and people for
+  // tears.
   double min_gain = 0.6;
   double min_agreement = 0.7;
-  // The pose must differ by one of these from what local SLAM says [m], [rad].
+  // The pose must differ from that of local SLAM by one of these [m], [rad].
   double min_translation_meters = 0.2;
   double min_rotation = 0.035;
 };
@@ -50,19 +51,19 @@ struct Tear {
   // The two parts, counted from 0, `first` seen before `second`.
   int first_part;
   int second_part;
-  // Takes the second part's walls, as placed in the submap, to where the first
-  // part has them.
+  // Moves the second part's walls, as placed in the submap, to their position
+  // in the first part.
   Rigid2 T_first_second;
-  // By how much that moves the middle of what both have seen [m].
+  // How far it moves the middle of the area seen by both [m].
   double translation;
   double agreement_as_placed;
   double agreement_as_registered;
-  // Wall cells that were compared as placed.
+  // Number of wall cells compared as placed.
   double num_points;
 };
 
-// `scans` in the order in which they were inserted. The clearest tear; none
-// where no two parts give reason to believe in one. Tens of milliseconds.
+// Returns the clearest tear, or none if no two parts indicate one. `scans` are
+// in the order in which they were inserted. Tens of milliseconds.
 [[nodiscard]] std::optional<Tear> FindTear(
     const TearOptions& options, const std::vector<PlacedScan>& scans);
 

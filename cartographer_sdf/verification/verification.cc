@@ -12,13 +12,13 @@
 namespace cartographer_sdf {
 namespace {
 
-// More would only cost time: the best make the closest rivals.
+// More would only take time: the best are the closest rivals.
 constexpr size_t kMaxNumSelfSimilarPoses = 3;
 
-// A rival whose score is lower by more than this is not worth mentioning.
+// A rival whose score is lower by more than this is not reported.
 constexpr double kCloseRivalGap = 2.;
 
-// Along a corridor the pose may as well be off by these [m].
+// Possible pose errors along a corridor [m].
 constexpr double kSlides[] = {-3., -1.5, 1.5, 3.};
 
 struct Candidate {
@@ -44,7 +44,7 @@ class PairVerifier {
 
   [[nodiscard]] const Eigen::Vector2d& centroid() const { return centroid_; }
 
-  // Best first; of equal ones in the order given.
+  // Returns registered poses, best first, ties in the order given.
   [[nodiscard]] std::vector<Candidate> Refine(
       const std::vector<Rigid2>& guesses) const {
     std::vector<Candidate> candidates;
@@ -65,9 +65,9 @@ class PairVerifier {
                                  hypotheses, centroid_));
   }
 
-  // The candidate against the others, which may be the same pose. What nobody
-  // proposed is tried too, always or where the candidate is more likely right
-  // than wrong.
+  // Judges the candidate against the others, which may be the same pose. Also
+  // tries poses that no one proposed: always, or only if the candidate is more
+  // likely correct than not.
   enum class RivalSearch { kWhereLikely, kAlways };
   [[nodiscard]] VerifiedPose Verify(const Candidate& candidate,
                                     const std::vector<Candidate>& others,
@@ -129,8 +129,8 @@ class PairVerifier {
     return distinct;
   }
 
-  // Where else the query may lie: turned by half a turn, shifted along the
-  // walls, or where one of the submaps resembles itself.
+  // Returns other possible poses of the query: turned by half a turn, shifted
+  // along the walls, or moved by a self-similarity of either submap.
   [[nodiscard]] std::vector<Rigid2> UnproposedPoses(
       const MeasuredPose& best) const {
     const Rigid2& T_reference_query = best.T_reference_query;
@@ -250,7 +250,7 @@ std::vector<Rigid2> FindSelfSimilarPoses(
     if (!is_identity(hypothesis)) distinct.push_back(hypothesis);
   }
   std::vector<Rigid2> poses;
-  // Registration may take a hypothesis to the identity after all.
+  // Registration may move a hypothesis to the identity.
   for (const Candidate& candidate : verifier.RefineBest(distinct)) {
     if (!is_identity(PoseOf(candidate))) poses.push_back(PoseOf(candidate));
   }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Decides whether a query submap lies in a reference submap as a hypothesis
-// says: ranks the hypotheses, registers the best on the distance fields,
-// measures each and judges the best against its rivals. Frames: poses are
-// T_reference_query between submap frames [m, rad].
+// Verifies hypotheses of the pose of a query submap in a reference submap:
+// ranks them, registers the best on the distance fields, measures each and
+// judges the best against its rivals. Poses are T_reference_query between
+// submap frames [m, rad].
 
 #ifndef CARTOGRAPHER_SDF_VERIFICATION_VERIFICATION_H_
 #define CARTOGRAPHER_SDF_VERIFICATION_VERIFICATION_H_
@@ -32,8 +32,8 @@ struct VerificationOptions {
 };
 [[nodiscard]] std::string Validate(const VerificationOptions& options);
 
-// Poses of a pair that differ by more, at the centroid of the query, are
-// rivals: at most one of them is right.
+// Poses of a pair that differ by more than this, at the centroid of the query,
+// are rivals: at most one of them is correct.
 constexpr PoseTolerance kRivalTolerance{1., 0.35};
 constexpr size_t kMaxNumRivals = 3;
 
@@ -47,49 +47,47 @@ struct VerifiedPose {
   Verdict verdict;
   Rigid2 T_reference_query;  // registered
   PairEvidence evidence;
-  double score;  // log-odds of being right
-  // Lead over the best distinct pose, of the scores without their margins;
-  // within [-kMaxMargin, kMaxMargin], negative where the other is better.
+  double score;  // log-odds of being correct
+  // Lead over the best distinct pose, in scores without the margin term; within
+  // [-kMaxMargin, kMaxMargin], negative if the other is better.
   double margin;
   // Distinct poses that score nearly as well, best first; at most
   // kMaxNumRivals.
   std::vector<Rigid2> rivals;
 };
 
-// Registers the pair from the guess and measures it there; none where the walls
-// fix no pose.
+// Registers the pair from the guess and measures it there; none if the walls do
+// not determine a pose.
 [[nodiscard]] std::optional<MeasuredPose> RegisterAndMeasure(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& guess_T_reference_query);
 
-// The best of many hypotheses, judged. Its rivals are the other hypotheses and,
-// where it is more likely right than wrong, its half turn, its shifts along the
-// walls, and what it becomes by self-similar poses of either submap. None where
-// no hypothesis is worth registering. Independent of the order of the
-// hypotheses.
+// Verifies many hypotheses and returns the best, judged. Its rivals are the
+// other hypotheses and, if it is more likely correct than not, its half turn,
+// its shifts along the walls, and its compositions with self-similar poses of
+// either submap. None if no hypothesis is worth registering. Independent of the
+// order of the hypotheses.
 [[nodiscard]] std::optional<VerifiedPose> VerifyHypotheses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query);
 
-// Each of the poses, registered and judged, whatever its score; best first. Of
-// poses that registration makes nearly the same, the best. Rivals are the other
-// poses and those above.
+// Registers and judges each of the poses, whatever its score; best first. Of
+// poses that registration makes nearly equal, keeps the best. Rivals are the
+// other poses and those listed above.
 [[nodiscard]] std::vector<VerifiedPose> VerifyPoses(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const std::vector<Rigid2>& T_reference_query);
 
-// One pose that somebody claims, registered and judged against `competitors`
-// and all rivals above, even where it is unlikely. None where the walls fix no
-// pose.
+// Registers and judges one claimed pose against `competitors` and all rivals
+// above, even if it is unlikely. None if the walls do not determine a pose.
 [[nodiscard]] std::optional<VerifiedPose> VerifyClaim(
     const VerificationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& claimed_T_reference_query,
     const std::vector<Rigid2>& competitors_T_reference_query);
 
-// The poses among the hypotheses, registered, in which the submap resembles
-// itself and which are distinct from the identity and from each other; best
-// first.
+// Returns the registered hypotheses under which the submap resembles itself,
+// distinct from the identity and from each other; best first.
 [[nodiscard]] std::vector<Rigid2> FindSelfSimilarPoses(
     const VerificationOptions& options, const SurfaceModel& model,
     const std::vector<Rigid2>& hypotheses);

@@ -130,7 +130,7 @@ TEST_F(HostileMapTest, Header) {
       ErrorOfRecords([](auto* records) { records->erase(records->begin()); }),
       HasSubstr("has format version 0"));
   EXPECT_THAT(ErrorOfRecords([](auto* records) { (*records)[0] = "\xff"; }),
-              HasSubstr("record 1 is no header"));
+              HasSubstr("record 1 is not a header"));
 }
 
 TEST_F(HostileMapTest, OrderOfRecords) {
@@ -150,7 +150,7 @@ TEST_F(HostileMapTest, OrderOfRecords) {
       ErrorOfRecords([](auto* records) { records->push_back((*records)[2]); }),
       HasSubstr("is a second list of options"));
   EXPECT_THAT(ErrorOfRecords([](auto* records) { (*records)[4] = "\x1a\x7f"; }),
-              HasSubstr("record 5 is no valid protocol buffer"));
+              HasSubstr("record 5 is not a valid protocol buffer"));
 }
 
 TEST_F(HostileMapTest, NumberOfTrajectories) {
@@ -205,7 +205,7 @@ TEST_F(HostileMapTest, Nodes) {
       ErrorOfChanged([](SmallMap* map) {
         map->nodes[1].mutable_node_data()->mutable_gravity_alignment()->Clear();
       }),
-      HasSubstr("(node 5,1) has a rotation that is no quaternion"));
+      HasSubstr("(node 5,1) has a rotation that is not a quaternion"));
   EXPECT_THAT(ErrorOfChanged([](SmallMap* map) {
                 map->nodes[1]
                     .mutable_node_data()
@@ -213,7 +213,7 @@ TEST_F(HostileMapTest, Nodes) {
                     ->mutable_rotation()
                     ->set_x(kNaN);
               }),
-              HasSubstr("(node 5,1) has a rotation that is no quaternion"));
+              HasSubstr("(node 5,1) has a rotation that is not a quaternion"));
 }
 
 TEST_F(HostileMapTest, Odometry) {

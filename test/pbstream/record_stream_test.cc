@@ -183,7 +183,7 @@ TEST(RecordStreamTest, NamesTheCorruptedRecord) {
       static_cast<char>(damaged[damaged.size() - 6] ^ 1);
   EXPECT_THAT(ErrorOfBytes(Container({"first"}) + LittleEndian(damaged.size()) +
                            damaged),
-              HasSubstr("is corrupted: record 2 is no valid gzip data"));
+              HasSubstr("is corrupted: record 2 is not valid gzip data"));
   const std::string trailed = Gzipped("first") + "?";
   EXPECT_THAT(
       ErrorOfBytes(MagicNumber() + LittleEndian(trailed.size()) + trailed),

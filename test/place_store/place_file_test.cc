@@ -206,11 +206,11 @@ TEST_F(PlaceFileTest, RecordsMustMatchTheHeader) {
   EXPECT_THAT(error({records[0]}), HasSubstr("0 places of 2"));
   EXPECT_THAT(error({records[0], records[1]}), HasSubstr("1 places of 2"));
   EXPECT_THAT(error({records[0], records[1], records[1]}),
-              HasSubstr("was there before"));
+              HasSubstr("has a duplicate place"));
   EXPECT_THAT(error({records[1], records[1], records[2]}),
               ::testing::Not(::testing::IsEmpty()));
   EXPECT_THAT(error({records[0], records[1], "nonsense"}),
-              HasSubstr("record 3 is no place"));
+              HasSubstr("record 3 is not a place"));
   ProtoPlace place;
   ASSERT_TRUE(place.ParseFromString(records[2]));
   place.mutable_descriptors()->Resize(
@@ -226,7 +226,7 @@ TEST_F(PlaceFileTest, RecordsMustMatchTheHeader) {
               HasSubstr("version 77"));
   header.set_kind("poems");
   EXPECT_THAT(error({header.SerializeAsString(), records[1], records[2]}),
-              HasSubstr("no file of places"));
+              HasSubstr("not a place file"));
 }
 
 TEST(PlaceCodecTest, ImpossiblePlacesAreErrors) {
