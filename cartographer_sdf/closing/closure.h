@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A closure: a match that verification accepted, on its way into the pose
-// graph, and what became of it.
+// A loop closure: a match that verification accepted, and its status on the way
+// into the pose graph.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_CLOSURE_H_
 #define CARTOGRAPHER_SDF_CLOSING_CLOSURE_H_
@@ -18,14 +18,14 @@ namespace cartographer_sdf {
 enum class ClosureStatus {
   kSelected,       // consistent with the others; no constraints yet
   kInGraph,        // its constraints are in the pose graph
-  kInconsistent,   // weightier closures contradict it, by the odometry between
-  kUnsupported,    // no other supports it, and it is not certain alone
+  kInconsistent,   // weightier closures contradict it, through odometry
+  kUnsupported,    // no other supports it, and its own score is too low
   kScansDisagree,  // too few scans of its nodes fit where it puts them
   kOutlier,        // the optimised pose graph contradicts it
   // Only beside a live Cartographer.
-  kReady,         // its constraints go in with the next optimisation
+  kReady,         // its constraints enter with the next optimisation
   kDetectedOnly,  // injection is switched off, or there is no pose graph
-  kGone,          // a submap of it was trimmed or deleted before
+  kGone,          // one of its submaps was trimmed or deleted before
 };
 // "selected", "in_graph", ...
 [[nodiscard]] const char* ClosureStatusName(ClosureStatus status);
@@ -35,12 +35,12 @@ struct Closure {
   ClosureStatus status = ClosureStatus::kSelected;
   // Inter-submap constraints; empty unless kInGraph.
   std::vector<Constraint> constraints;
-  // Mean error of the constraints in the last optimised graph that had them;
-  // zero for a closure that never was in one.
+  // Mean error of the constraints in the last optimised graph that contained
+  // them; zero if none did.
   ConstraintError graph_error;
 };
 
-// The accepted ones among the matches, in their order.
+// Makes a closure of each accepted match, in the order of the matches.
 [[nodiscard]] std::vector<Closure> MakeClosures(std::vector<Match> matches);
 
 }  // namespace cartographer_sdf

@@ -25,7 +25,7 @@ struct UncertainPose {
 };
 
 UncertainPose Compose(const UncertainPose& T_a_b, const UncertainPose& T_b_c) {
-  // A small turn of b moves c by the lever from b to it.
+  // A small rotation of b moves c by the lever from b to c.
   const Eigen::Vector2d lever =
       T_a_b.pose.RotationMatrix() * T_b_c.pose.translation();
   Eigen::Matrix3d J_ab = Eigen::Matrix3d::Identity();
@@ -95,7 +95,8 @@ double TranslationSigma(const UncertainPose& pose) {
   return std::sqrt(0.5 * pose.covariance.topLeftCorner<2, 2>().trace());
 }
 
-// Another id than that of any submap of a file, whose numbers are not negative.
+// Returns an id unlike that of any submap in a file, whose ids are not
+// negative.
 SubmapId Apart(const SubmapId& id) {
   return {std::numeric_limits<int>::min() + id.trajectory, id.index};
 }
@@ -107,7 +108,8 @@ std::string Validate(const ConsistencyOptions& options) {
         options.translation_sigma_per_meter >= 0. &&
         options.closure_translation_sigma_meters > 0. &&
         options.closure_rotation_sigma > 0.)) {
-    return "consistency: standard deviations must be positive";
+    return "consistency: sigmas of odometry must not be negative, those of "
+           "closures must be positive";
   }
   if (!(options.max_mahalanobis_distance > 0. &&
         options.max_cycle_sigma_meters > 0.)) {
@@ -118,8 +120,8 @@ std::string Validate(const ConsistencyOptions& options) {
 }
 
 double DriftSigma(const ConsistencyOptions& options, const double driven) {
-  // Rotation gathered evenly on the way moves the end by the lever of the
-  // second half, on average.
+  // The heading error is a random walk; integrated along the way, it displaces
+  // the end with variance sigma^2 * driven^3 / 3.
   const double swing = options.rotation_sigma_per_sqrt_meter *
                        std::sqrt(driven) * driven / std::sqrt(3.);
   return std::hypot(swing, options.translation_sigma_per_meter * driven);
@@ -128,8 +130,8 @@ double DriftSigma(const ConsistencyOptions& options, const double driven) {
 CycleVerdict CheckCycle(const ConsistencyOptions& options,
                         const std::map<SubmapId, OdometryPose>& odometry,
                         const PairPose& one, const PairPose& other) {
-  // Where a cycle begins and in which direction it runs makes a difference:
-  // covariances are those of either direction.
+  // Fixes where the cycle begins and in which direction it runs, on which its
+  // covariance depends.
   PairPose a = FromLowerToHigherId(one);
   PairPose b = FromLowerToHigherId(other);
   if (std::tie(b.reference, b.query) < std::tie(a.reference, a.query)) {
@@ -189,7 +191,7 @@ double VerdictTable::Support(const size_t k,
 std::vector<size_t> VerdictTable::InOrderOfWeight() const {
   std::vector<size_t> order(closures_.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  // Sums round the same.
+  // By ids first, so that sums round the same.
   std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
     return IsBeforeByIds(closures_[a], closures_[b]);
   });

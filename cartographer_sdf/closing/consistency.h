@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Selects a mutually consistent set of closures. Two closures and the odometry
-// between their ends form a cycle; the error by which it fails to close is held
-// against the uncertainty that odometry gathers on the way ([Mangelson2018]).
-// Every pair of closures is checked, and those that contradict weightier ones
-// are dropped.
+// between their ends form a cycle; its closing error is compared with the
+// uncertainty that odometry accumulates on the way ([Mangelson2018]). Every
+// pair of closures is checked, and those that contradict weightier ones are
+// dropped.
 //
 // The cycle of two closures far apart on the trajectory is uninformative; that
 // of two near each other separates true closures from perceptual aliasing. A
@@ -33,30 +33,32 @@ struct ConsistencyOptions {
   double rotation_sigma_per_sqrt_meter = 0.01;
   // ... and of its translation, as a fraction of the distance.
   double translation_sigma_per_meter = 0.01;
-  // Of a closure, and of a submap's own shape [m], [rad].
+  // Of a closure, including the distortion of its submaps [m], [rad].
   double closure_translation_sigma_meters = 0.15;
   double closure_rotation_sigma = 0.02;
   // A cycle is consistent when it closes within this many standard deviations
-  // (Mahalanobis; 4.03 holds 99.9 % of true ones).
+  // (Mahalanobis distance; 4.03 accepts 99.9 % of true ones).
   double max_mahalanobis_distance = 4.03;
-  // A cycle whose end point is less certain than this is not tested [m].
+  // A cycle is not tested if the standard deviation of its end point is larger
+  // [m].
   double max_cycle_sigma_meters = 1.;
-  // A closure without support needs this score; log-odds.
+  // Least score of a closure without support; log-odds.
   double min_unsupported_score = 5.;
-  // Score of all consistent closures together that counts as support.
+  // Least total score of all consistent closures that counts as support.
   double min_support = 8.;
 };
 [[nodiscard]] std::string Validate(const ConsistencyOptions& options);
 
-// Standard deviation of the translation by odometry after so much driving [m].
+// Returns the standard deviation of odometry's translation after driving
+// `driven` metres [m].
 [[nodiscard]] double DriftSigma(const ConsistencyOptions& options,
                                 double driven);
 
 enum class CycleVerdict { kUninformative, kConsistent, kInconsistent };
 
-// The cycle of two closures: each pair of their ends is joined by odometry
-// where it shares a trajectory; of the two ways to join them, the more certain.
-// The same for either order of the two, and either direction of each.
+// Checks the cycle of two closures. Odometry joins a pair of their ends if both
+// lie on one trajectory; of the two ways to join them, the more certain counts.
+// Independent of the order of the two closures and of the direction of each.
 [[nodiscard]] CycleVerdict CheckCycle(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry, const PairPose& one,
@@ -65,33 +67,33 @@ enum class CycleVerdict { kUninformative, kConsistent, kInconsistent };
 enum class Selection {
   kSelected,
   kInconsistent,  // weightier closures contradict it
-  kUnsupported,   // no other supports it, and it is not certain alone
+  kUnsupported,   // no other supports it, and its own score is too low
 };
 
 struct SelectionResult {
   Selection selection;
-  double support = 0.;        // scores of the selected closures that agree
-  double contradiction = 0.;  // scores of the selected ones that do not
+  double support = 0.;        // total score of selected closures that agree
+  double contradiction = 0.;  // total score of those that disagree
 };
 
-// What each two of several closures say of each other. A score below zero
-// counts as none.
+// The verdicts on all pairs of a set of closures. Closures with a negative
+// score have zero weight.
 class VerdictTable {
  public:
-  // `closures` outlives it; `check` is the same for either order of the two.
+  // `closures` must outlive the table; `check` must be symmetric.
   VerdictTable(const std::vector<PairPose>& closures,
                const std::function<CycleVerdict(const PairPose&,
                                                 const PairPose&)>& check);
 
-  // Support and contradiction of closure k by the others; k itself is passed
-  // over.
+  // Returns support and contradiction of closure k by `others`; skips k itself.
   [[nodiscard]] SelectionResult Weigh(size_t k,
                                       const std::vector<size_t>& others) const;
-  // The one less the other.
+  // Returns support minus contradiction.
   [[nodiscard]] double Support(size_t k,
                                const std::vector<size_t>& others) const;
-  // The closures that most others support come first, and set the frame in
-  // which later ones are judged. The same whatever the order given.
+  // Returns the indices of the closures by decreasing weight, score plus
+  // support by all others, as later ones are judged against earlier ones.
+  // Independent of the input order.
   [[nodiscard]] std::vector<size_t> InOrderOfWeight() const;
 
  private:
@@ -99,16 +101,16 @@ class VerdictTable {
   std::vector<CycleVerdict> verdicts_;
 };
 
-// One result for each closure, in order; independent of the order. Quadratic
-// in the number of closures.
+// Returns one result per closure, in order; results do not depend on that
+// order. Quadratic in the number of closures.
 [[nodiscard]] std::vector<SelectionResult> SelectConsistent(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry,
     const std::vector<PairPose>& closures);
 
 // SelectConsistent for pairs whose reference lies in one map and whose query in
-// another, joined by the odometry of each. Trajectories of the two maps are
-// different ones even where their ids are equal.
+// another, joined by the odometry of each map. Trajectories of the two maps are
+// distinct even if their ids are equal.
 [[nodiscard]] std::vector<SelectionResult> SelectConsistentBetween(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& reference_odometry,

@@ -16,7 +16,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Every point equally certain.
+// Gives every point the same certainty.
 std::vector<SurfacePoint> ToSurfacePoints(const PointCloud2& point_cloud) {
   std::vector<SurfacePoint> points;
   points.reserve(point_cloud.size());
@@ -26,8 +26,8 @@ std::vector<SurfacePoint> ToSurfacePoints(const PointCloud2& point_cloud) {
   return points;
 }
 
-// The node's pose in the submap by its own scan; none where that can't be
-// believed.
+// Registers the node's own scan to the submap; returns nullopt if the result is
+// implausible.
 std::optional<Rigid2> RegisterNode(const ConstraintOptions& options,
                                    const SurfaceModel& submap,
                                    const std::vector<SurfacePoint>& scan,
@@ -53,7 +53,7 @@ std::optional<Rigid2> RegisterNode(const ConstraintOptions& options,
   return T_submap_node;
 }
 
-// Constraints of nodes of another submap against `submap`.
+// Appends constraints between nodes of another submap and `submap`.
 void AppendConstraints(const ConstraintOptions& options, const SubmapId& submap,
                        const SurfaceModel& surface, const InsertedNodes& nodes,
                        const Rigid2& T_submap_other, const ScansByNode& scans,

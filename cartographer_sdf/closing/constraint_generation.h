@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Constraint generation: turns closures into constraints of the pose graph.
-// Cartographer's graph has constraints between a submap and a node, and nothing
-// else, so a closure of two submaps becomes several: nodes of the query against
-// the reference submap, and nodes of the reference against the query submap.
-// Each node's own scan is registered to the other submap's field, because local
-// SLAM bends within a submap by more than that registration errs.
+// Cartographer's graph only has constraints between a submap and a node, so a
+// closure of two submaps becomes several constraints: nodes of the query
+// against the reference submap, and nodes of the reference against the query
+// submap. Each node's own scan is registered to the other submap's field,
+// because local SLAM bends within a submap by more than that registration errs.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GENERATION_H_
 #define CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GENERATION_H_
@@ -23,20 +23,20 @@ namespace cartographer_sdf {
 
 struct ConstraintOptions {
   // Nodes of each of the two submaps that are registered to the other one.
-  // More: a stronger and smoother pull.
+  // Larger: a stronger and smoother pull.
   int num_nodes_per_submap = 5;
-  // A closure that yields fewer constraints is not believed.
+  // A closure that yields fewer constraints is rejected.
   int min_num_constraints = 3;
   // The host's POSE_GRAPH.constraint_builder.loop_closure_translation_weight
   // and loop_closure_rotation_weight.
   double translation_weight = 1.1e4;
   double rotation_weight = 1e5;
-  // How far a node's pose within its submap may be off: the prior of its
+  // Standard deviations of a node's pose within its submap: the prior of its
   // registration [m], [rad].
   double translation_sigma_meters = 0.1;
   double rotation_sigma = 0.02;
-  // A node gives no constraint where registration moves it by more than this
-  // many sigmas, or leaves a smaller fraction of its scan's points on walls.
+  // A node yields no constraint if registration moves it by more than this many
+  // sigmas, or leaves a smaller fraction of its scan's points on walls.
   double max_num_sigmas = 3.;
   double min_hit_ratio = 0.6;
 };
@@ -45,20 +45,22 @@ struct ConstraintOptions {
 // (submap <- node) of the nodes whose scans were inserted into a submap.
 using InsertedNodes = std::map<NodeId, Rigid2>;
 
-// Of all submaps, as the intra-submap constraints have them.
+// Returns the inserted nodes of all submaps, from the intra-submap constraints.
 [[nodiscard]] std::map<SubmapId, InsertedNodes> FindInsertedNodes(
     const PoseGraph& pose_graph);
 
-// The nodes that get a constraint: evenly spaced ones, in order.
+// Selects the nodes that get a constraint: evenly spaced ones, in order.
 [[nodiscard]] InsertedNodes ChooseNodes(const ConstraintOptions& options,
                                         const InsertedNodes& nodes);
 
-// Filtered range data of nodes, in their frames. One that is empty is none.
+// Filtered range data of nodes, in the node frames. An empty point cloud counts
+// as absent.
 using ScansByNode = std::map<NodeId, PointCloud2>;
 
-// Inter-submap constraints of one pair of submaps. Nodes whose scans do not fit
-// yield none; nodes without a scan are taken as local SLAM placed them.
-// `nodes` has the nodes of the submaps; of one that is absent none is used.
+// Returns the inter-submap constraints of one pair of submaps. Nodes whose
+// scans do not fit yield none; nodes without a scan keep their pose by local
+// SLAM. `nodes` has the nodes of the submaps; a submap that is absent
+// contributes none.
 [[nodiscard]] std::vector<Constraint> GenerateConstraints(
     const ConstraintOptions& options, const PairPose& pair,
     const std::map<SubmapId, InsertedNodes>& nodes,

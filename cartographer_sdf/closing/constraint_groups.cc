@@ -18,7 +18,7 @@ namespace {
 struct Insertion {
   SubmapId submap;
   Rigid2 T_submap_node;
-  // From the middle one of the submap's scans, in scans.
+  // Twice the distance from the middle of the submap's scans, in scans.
   int distance_to_middle = 0;
 };
 
@@ -60,7 +60,7 @@ const Insertion* BestInsertion(
   return best;
 }
 
-// Takes out of `relations` the largest set around one of them.
+// Removes the largest set around one relation from `relations`, and returns it.
 ConstraintGroup TakeLargestGroup(
     const GroupingOptions& options, const PairOfSubmaps& pair,
     const Eigen::Vector2d& query_centroid,
@@ -83,7 +83,7 @@ ConstraintGroup TakeLargestGroup(
       centre = &candidate;
     }
   }
-  // Not finite poses would be near to nothing; readers refuse them.
+  // Only non-finite poses are near to nothing; readers reject them.
   CHECK(centre != nullptr);
   ConstraintGroup group{pair.first, pair.second, centre->T_reference_query, {}};
   std::vector<GroupedRelation> rest;
@@ -98,8 +98,8 @@ ConstraintGroup TakeLargestGroup(
   return group;
 }
 
-// Poses of pairs of submaps, as inter-submap constraints have them; those that
-// relate a node to no other submap with a centroid go to `unrelated`.
+// Returns the poses of pairs of submaps that inter-submap constraints imply.
+// Constraints that relate no two submaps with centroids go to `unrelated`.
 std::map<PairOfSubmaps, std::vector<GroupedRelation>> RelateSubmaps(
     const PoseGraph& pose_graph,
     const std::map<SubmapId, Eigen::Vector2d>& centroids,

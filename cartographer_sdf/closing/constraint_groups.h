@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A constraint holds a node against a submap; but the node's scan stands in
-// submaps of its own. So each inter-submap constraint says where two submaps
-// lie, which can be checked, and many of them say the same.
+// Groups constraints by the relative pose of two submaps that they imply. A
+// constraint relates a node to a submap, but the node's scan was also inserted
+// into other submaps. Each inter-submap constraint therefore implies a relative
+// pose of two submaps, which can be verified, and many imply the same one.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GROUPS_H_
 #define CARTOGRAPHER_SDF_CLOSING_CONSTRAINT_GROUPS_H_
@@ -21,8 +22,9 @@
 namespace cartographer_sdf {
 
 struct GroupingOptions {
-  // Constraints of one pair of submaps belong together where they put the
-  // centroid of the query less than this apart [m], [rad]: what submaps bend.
+  // Constraints of one pair of submaps belong together if their poses differ by
+  // less than this at the centroid of the query [m], [rad]: the amount by which
+  // submaps bend.
   double max_distance_meters = 0.5;
   double max_rotation = 0.15;
 };
@@ -31,25 +33,25 @@ struct GroupingOptions {
 struct ConstraintGroup {
   SubmapId reference;
   SubmapId query;  // reference < query
-  // Of the constraint that most others are near to.
+  // Implied by the constraint that is near most others.
   Rigid2 T_reference_query;
   // Indices into PoseGraph::constraints, ascending; at least one.
   std::vector<size_t> constraints;
 };
 
 struct GroupedConstraints {
-  // By reference, query and first constraint.
+  // Ordered by reference, query and first constraint.
   std::vector<ConstraintGroup> groups;
   // Inter-submap constraints that relate no two of the known submaps: their
-  // submap is not known, or no other known submap holds their node's scan.
+  // submap is unknown, or no other known submap contains their node's scan.
   std::vector<size_t> unrelated;
 };
 
-// Groups the inter-submap constraints. `centroids` are points of the known
-// submaps around which they extend, in their own frames. Of the submaps into
-// which a node was inserted, that of the constraint aside, the one counts in
-// which it is nearest to the middle of the scans: it saw most of the
-// surroundings. Quadratic in the number of constraints of one pair.
+// Groups the inter-submap constraints. `centroids` has the centroids of the
+// known submaps, in their own frames. Of the submaps into which a node was
+// inserted, except that of the constraint, the one counts in which the node is
+// nearest to the middle of the scans, as it contains most of the surroundings.
+// Quadratic in the number of constraints of one pair.
 [[nodiscard]] GroupedConstraints GroupConstraints(
     const GroupingOptions& options, const PoseGraph& pose_graph,
     const std::map<SubmapId, Eigen::Vector2d>& centroids);

@@ -23,7 +23,7 @@ ConstraintError MeanError(const PoseGraph& pose_graph,
   return mean;
 }
 
-// In units of what is allowed.
+// The error relative to its limit.
 double Excess(const OutlierRejectionOptions& options,
               const ConstraintError& error) {
   return std::max(error.translation / options.max_translation_error_meters,
@@ -49,8 +49,8 @@ void MeasureErrors(const PoseGraph& pose_graph,
   }
 }
 
-// Removes the closures that the graph contradicts most; false where there is
-// none.
+// Removes the closures that the graph contradicts most; returns false if there
+// are none.
 bool RejectWorst(const OutlierRejectionOptions& options,
                  std::vector<Closure>* const closures) {
   std::vector<std::optional<ConstraintError>> errors;
@@ -106,9 +106,10 @@ OptimizedGraph OptimizeAndRejectOutliers(
   CHECK_EQ(Validate(options), "");
   OptimizedGraph result;
   for (int round = 0;; ++round) {
-    // From the given poses each time: a removed closure leaves no trace.
+    // Starts from the given poses each time, so that removed closures leave no
+    // trace.
     result.pose_graph = WithClosures(pose_graph, *closures);
-    // Nothing new: the map stays as it is, to the last bit.
+    // Without new constraints, the map stays identical to the last bit.
     if (result.pose_graph.constraints.size() == pose_graph.constraints.size()) {
       return result;
     }
@@ -119,8 +120,8 @@ OptimizedGraph OptimizeAndRejectOutliers(
       on_progress(static_cast<double>(round + 1) /
                   (options.max_num_rounds + 1));
     }
-    // The last round's graph is optimised without what was removed before;
-    // nothing may be removed after it.
+    // Nothing may be removed after the last round, as the graph would not be
+    // optimised again.
     if (round >= options.max_num_rounds || !RejectWorst(options, closures)) {
       return result;
     }

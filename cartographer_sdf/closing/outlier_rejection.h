@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The last guard against false closures: outlier rejection after optimisation.
-// A closure that the optimised graph contradicts is removed, and the rest is
-// optimised again.
+// Outlier rejection after optimisation, the last guard against false closures:
+// removes the closures that the optimised graph contradicts, and optimises the
+// rest again.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_OUTLIER_REJECTION_H_
 #define CARTOGRAPHER_SDF_CLOSING_OUTLIER_REJECTION_H_
@@ -29,19 +29,18 @@ struct OutlierRejectionOptions {
 };
 [[nodiscard]] std::string Validate(const OutlierRejectionOptions& options);
 
-// Indices of the errors to reject before optimising again: those that exceed
-// what is allowed and are at least half as bad as the worst, as a false
-// constraint strains true ones beside it. Empty where none exceeds it; entries
-// without an error take no part.
+// Returns the indices of the errors to reject before optimising again: those
+// that exceed the limits and, relative to them, half of the worst error, as a
+// false constraint also strains true ones nearby. Empty if none exceeds the
+// limits; skips entries without an error.
 [[nodiscard]] std::vector<size_t> FindOutliers(
     const OutlierRejectionOptions& options,
     const std::vector<std::optional<ConstraintError>>& errors);
 
 struct OptimizedGraph {
-  // With the constraints of the closures that are left at the end; as given
-  // where none is.
+  // With the constraints of the remaining closures; unchanged if none remains.
   PoseGraph pose_graph;
-  std::vector<OptimizationSummary> optimizations;  // one for each round
+  std::vector<OptimizationSummary> optimizations;  // one per round
 };
 
 // Sets status, constraints and graph error of the closures that are in the

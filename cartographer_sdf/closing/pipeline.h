@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The one way from matches to an optimised pose graph: a mutually consistent
-// set of closures is selected, turned into constraints and optimised, and
-// outliers are rejected. close_loops and merge run all of it (CloseGraph);
-// beside a live Cartographer, which optimises by itself, the first two stages
-// run each time there is a new match.
+// The pipeline from matches to an optimised pose graph: selects a mutually
+// consistent set of closures, generates their constraints, optimises, and
+// rejects outliers. close_loops and merge run all of it (CloseGraph); beside a
+// live Cartographer, which optimises by itself, the first two stages run for
+// each new match.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
 #define CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
@@ -32,65 +32,67 @@ namespace cartographer_sdf {
 struct ClosingOptions {
   // Whether closures of submaps that their own scans show to be torn have zero
   // weight: they neither support nor contradict others, and enter the graph
-  // only where others support them.
+  // only if others support them.
   bool detect_torn_submaps = true;
   TearOptions tear;
   ConsistencyOptions consistency;
   ConstraintOptions constraints;
   OptimizationOptions optimization;
-  // Whether odometry weights that the map itself shows (optimization.h)
-  // take the place of those of `optimization`.
+  // Whether odometry weights inferred from the map (optimization.h) replace
+  // those of `optimization`.
   bool infer_odometry_weights = true;
   OutlierRejectionOptions outlier_rejection;
 };
 [[nodiscard]] std::string Validate(const ClosingOptions& options);
 
-// `options.optimization`, with the odometry weights that the map shows where
-// they are to be inferred and it shows any.
+// Returns `options.optimization`, with inferred odometry weights if
+// `infer_odometry_weights` is set and the map determines them.
 [[nodiscard]] OptimizationOptions OptimizationInForce(
     const ClosingOptions& options, const PoseGraph& pose_graph);
 
-// Sets the status of each closure that still is to be decided (selected,
-// inconsistent, unsupported or ready) by its consistency with the others.
-// Closures that are in the graph or were only detected take part with their
-// weight; others take no part. Returns the indices of those in the graph that
-// the others contradict.
+// Sets the status of each undecided closure (selected, inconsistent,
+// unsupported or ready) by its consistency with the others. Closures that are
+// in the graph or were only detected contribute their weight; the rest are
+// ignored. Returns the indices of closures in the graph that the others
+// contradict.
 std::vector<size_t> SelectClosures(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry,
     const std::map<SubmapId, Tear>& torn_submaps,
     std::vector<Closure>* closures);
 
-// Gives the selected closures their constraints: kInGraph, or kScansDisagree
-// where there are too few. `places` has both places of each.
+// Generates the constraints of the selected closures and sets their status:
+// kInGraph, or kScansDisagree if there are too few. `places` must contain both
+// places of each.
 void GenerateConstraints(const ConstraintOptions& options,
                          const std::map<SubmapId, InsertedNodes>& nodes,
                          const std::map<SubmapId, Place>& places,
                          const ScansByNode& scans, const Executor& executor,
                          std::vector<Closure>* closures);
 
-// A map as CloseGraph takes it; nothing is owned.
+// The map that CloseGraph closes; nothing is owned.
 struct GraphToClose {
   // The optimisation starts from its poses.
   const PoseGraph* pose_graph;
   const std::map<SubmapId, OdometryPose>* odometry;
   const std::map<SubmapId, Place>* places;
-  // Of all nodes that have range data, in the frames of their nodes.
+  // Of all nodes with range data, in the node frames.
   const std::map<NodeId, PointCloud2>* point_clouds;
 };
 
 struct ClosedGraph {
   std::vector<Closure> closures;  // of all accepted matches, in their order
-  // Empty where they were not looked for.
+  // Empty if they were not searched for.
   std::map<SubmapId, Tear> torn_submaps;
-  // Optimised, with the new constraints at the end; as it was where none is.
+  // Optimised, with the new constraints at the end; unchanged if there are
+  // none.
   PoseGraph pose_graph;
-  std::vector<OptimizationSummary> optimizations;  // one for each round
+  std::vector<OptimizationSummary> optimizations;  // one per round
 };
 
-// Frozen trajectories stay where they are. `options.optimization` is in force
-// as it stands: inferring the weights is up to the caller, who knows which part
-// of the graph is of which map.
+// Frozen trajectories keep their poses. Uses `options.optimization` as given:
+// inferring the weights is up to the caller, who knows which part of the graph
+// belongs to which map.
 [[nodiscard]] ClosedGraph CloseGraph(const ClosingOptions& options,
                                      const GraphToClose& graph,
                                      std::vector<Match> matches,

@@ -14,14 +14,14 @@
 
 namespace cartographer_sdf {
 
-// The submaps of a map that their own scans, where `pose_graph`'s intra-submap
-// constraints place them, show to be torn. Nodes without a scan are left out.
+// Finds the submaps that are torn according to their own scans, placed by the
+// intra-submap constraints of `pose_graph`. Skips nodes without a scan.
 [[nodiscard]] std::map<SubmapId, Tear> FindTornSubmaps(
     const TearOptions& options, const PoseGraph& pose_graph,
     const std::map<NodeId, PointCloud2>& scans, const Executor& executor,
     const ProgressCallback& on_progress = {});
 
-// One line each for people: ids, by how much, and between which parts.
+// Returns one human-readable line: the id, the two parts, and their offset.
 [[nodiscard]] std::string DescribeTear(const SubmapId& id, const Tear& tear);
 
 }  // namespace cartographer_sdf

@@ -9,8 +9,8 @@
 
 namespace cartographer_sdf {
 
-// Runs task(0), ..., task(n - 1), each once, in any order, perhaps at once, and
-// returns when all are done.
+// Runs task(0), ..., task(n - 1), once each, in any order, possibly
+// concurrently, and returns when all are done.
 using Executor =
     std::function<void(size_t n, const std::function<void(size_t)>& task)>;
 

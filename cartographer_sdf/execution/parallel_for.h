@@ -16,12 +16,13 @@
 
 namespace cartographer_sdf {
 
-// Calls `function(i)` once for each i in [0, n), on `num_threads` >= 1 threads,
-// of which the caller's is one; returns when all calls have. Their order is not
-// defined: for results that do not depend on the number of threads, let each
-// call write what belongs to its i alone, and combine by index afterwards. It
-// must not throw. `on_progress` gets the fraction that is done, increasing, by
-// one call at a time, on any of the threads.
+// Calls `function(i)` once for each i in [0, n), on `num_threads` >= 1 threads
+// including the caller's; returns when all calls have returned. The order of
+// the calls is unspecified: for results that do not depend on the number of
+// threads, let each call write only the output of its own i, and combine
+// outputs by index afterwards. `function` must not throw. `on_progress`
+// receives the completed fraction, increasing, in one call at a time from any
+// of the threads.
 template <typename Function>
 void ParallelFor(const int n, const int num_threads, const Function& function,
                  const ProgressCallback& on_progress = {}) {
@@ -40,7 +41,7 @@ void ParallelFor(const int n, const int num_threads, const Function& function,
   for (std::thread& thread : threads) thread.join();
 }
 
-// Runs tasks as ParallelFor does.
+// Returns an executor that runs tasks as ParallelFor does.
 [[nodiscard]] inline Executor MakeExecutor(const int num_threads) {
   return
       [num_threads](const size_t n, const std::function<void(size_t)>& task) {

@@ -11,14 +11,14 @@
 
 namespace cartographer_sdf {
 
-// Takes the fraction of a job that is done, in [0, 1]. May be empty.
+// Receives the completed fraction of a job, in [0, 1]. May be empty.
 using ProgressCallback = std::function<void(double)>;
 
-// Counts the tasks of a stage that are done, on whatever threads they run, and
-// tells the callback: increasing fractions, one call at a time.
+// Counts the completed tasks of a stage, from any thread, and reports
+// increasing fractions to the callback, one call at a time.
 class TaskProgress {
  public:
-  // The stage takes the job from the fraction `begin` to `end`.
+  // The stage advances the job from fraction `begin` to `end`.
   TaskProgress(ProgressCallback on_progress, const size_t num_tasks,
                const double begin = 0., const double end = 1.)
       : on_progress_(std::move(on_progress)),
@@ -26,7 +26,7 @@ class TaskProgress {
         begin_(begin),
         end_(end) {}
 
-  // To be called once by each task. Thread-safe.
+  // Each task calls this once, when done. Thread-safe.
   void TaskIsDone() {
     if (!on_progress_) return;
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -41,7 +41,7 @@ class TaskProgress {
   const double begin_;
   const double end_;
   std::mutex mutex_;
-  size_t num_done_ = 0;  // guarded by the mutex, as are calls of the callback
+  size_t num_done_ = 0;  // guarded by mutex_, as are calls to the callback
 };
 
 }  // namespace cartographer_sdf

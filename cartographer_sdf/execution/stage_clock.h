@@ -15,19 +15,20 @@
 
 namespace cartographer_sdf {
 
-// Called at the beginning of each stage with its name; returns what is told of
-// its progress. May be empty.
+// Called with the name of each stage as it begins; returns the callback for its
+// progress. May be empty.
 using StageCallback = std::function<ProgressCallback(const std::string& stage)>;
 
-// Announces the stages of a job, one after the other, and takes their times.
+// Announces the stages of a job, one after another, and measures their
+// durations.
 class StageClock {
  public:
-  // `seconds` outlives the clock.
+  // `seconds` must outlive the clock.
   StageClock(StageCallback on_stage,
              std::vector<std::pair<std::string, double>>* const seconds)
       : on_stage_(std::move(on_stage)), seconds_(seconds) {}
 
-  // Ends the stage before.
+  // Ends the previous stage, if any.
   ProgressCallback Begin(const std::string& stage) {
     End();
     seconds_->emplace_back(stage, 0.);

@@ -26,15 +26,15 @@ struct Window {
   double mean_distance = 0.;             // [m]
 };
 
-// Gradients by central differences. Windows overlap: each is computed once, at
-// the first use.
+// Gradients by central differences. As windows overlap, each gradient is
+// computed once, on first use.
 class GradientCache {
  public:
   explicit GradientCache(const ArrayXXf& values)
       : values_(values),
         gradients_(values.size(), PolarGradient{0.f, kMissing}) {}
 
-  // Of an inner cell.
+  // The cell must not lie on the rim.
   const PolarGradient& At(const Index i, const Index j) {
     PolarGradient& gradient = gradients_[j * values_.rows() + i];
     if (gradient.magnitude == kMissing) {
@@ -63,8 +63,8 @@ class CircularHistogram {
         bins_per_radian_(num_bins / (2. * M_PI)),
         bins_(num_bins, 0.) {}
 
-  // Adds to the two bins nearest to the angle, in (-2 pi, 4 pi), by their
-  // closeness.
+  // Splits the weight linearly between the two bins nearest to the angle, which
+  // lies in (-2 pi, 4 pi).
   void Add(const double angle, const double weight) {
     const double bin = angle * bins_per_radian_ + num_bins_;  // positive
     int low = static_cast<int>(bin);
@@ -103,7 +103,7 @@ struct WindowAxis {
 };
 
 // Gradients and the mean distance within the radius of a point given in
-// (continuous) cells; what lies beyond the rim is left out.
+// (continuous) cells; cells beyond the rim are skipped.
 Window ExtractWindow(const DescriptorOptions& options,
                      const DistanceField& field, const Eigen::Vector2d& centre,
                      GradientCache* const gradients) {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a keypoint's surroundings look like, whatever the direction one comes
-// from ([Millane2019], Sec. IV-C): a histogram of the field's gradient
-// orientations in a circular window, relative to the dominant one, followed by
-// the window's mean distance to walls.
+// Rotation-invariant descriptors of the surroundings of keypoints
+// ([Millane2019], Sec. IV-C): a histogram of the field's gradient orientations
+// in a circular window, relative to the dominant orientation, followed by the
+// window's mean distance to walls.
 
 #ifndef CARTOGRAPHER_SDF_FEATURE_DESCRIPTOR_H_
 #define CARTOGRAPHER_SDF_FEATURE_DESCRIPTOR_H_
@@ -24,21 +24,21 @@ struct DescriptorOptions {
   // Bins of the histogram that finds the dominant orientation ([Lowe2004]).
   int num_orientation_bins = 36;
   // The last entry is this times the weighted mean distance *in millimetres*,
-  // beside a histogram of unit length; Table I gives 0.002 and leaves the unit
-  // open. Larger: places of other width are told apart more sharply.
+  // beside a histogram of unit length; Table I gives 0.002 without a unit.
+  // Larger: separates places of different width more sharply.
   double distance_weight = 0.002;
-  // Standard deviation of the Gaussian that prefers central gradients, as a
-  // fraction of the radius. The paper leaves it open; [Lowe2004] uses half of
-  // the window's width.
+  // Standard deviation of the Gaussian that favours central gradients, as a
+  // fraction of the radius. The paper does not specify it; [Lowe2004] uses half
+  // of the window's width.
   double gaussian_sigma_ratio = 0.5;
-  // Other peaks of the orientation histogram above this fraction of the
-  // highest give features of their own, as in [Lowe2004]; 1: only the highest,
-  // as the paper.
+  // Each further peak of the orientation histogram above this fraction of the
+  // highest yields another feature, as in [Lowe2004]; 1: only the highest, as
+  // in the paper.
   double secondary_orientation_ratio = 1.;
 };
 [[nodiscard]] std::string Validate(const DescriptorOptions& options);
 
-// A keypoint seen from one direction.
+// A keypoint with one orientation.
 struct Feature {
   Keypoint keypoint;
   double orientation;  // dominant gradient direction, submap frame [rad]
@@ -50,8 +50,8 @@ struct FeatureSet {
   Eigen::MatrixXf descriptors;  // (num_bins + 1) x number of features
 };
 
-// In the order of the keypoints; a window without any gradient yields no
-// feature. `smoothed` is SmoothField's result.
+// Returns features in the order of the keypoints; a window without any gradient
+// yields none. `smoothed` is SmoothField's result.
 [[nodiscard]] FeatureSet DescribeKeypoints(
     const DescriptorOptions& options, const DistanceField& field,
     const Eigen::ArrayXXf& smoothed, const std::vector<Keypoint>& keypoints);

@@ -29,7 +29,7 @@ std::vector<float> GaussianKernel(const double sigma) {
   return normalized;
 }
 
-// Scales, and convolves along the rows' index (the fast one).
+// Scales, and convolves along the row index (the fast one).
 ArrayXXf ConvolveColumns(const float scale, const ArrayXXf& values,
                          const std::vector<float>& kernel) {
   const Index radius = static_cast<Index>(kernel.size()) / 2;
@@ -133,7 +133,7 @@ bool IsLocalMaximum(const ArrayXXf& magnitude, const Index i, const Index j,
   for (Index b = j - reach; b <= j + reach; ++b) {
     for (Index a = i - reach; a <= i + reach; ++a) {
       const float other = magnitude(a, b);
-      // Of equal ones, the first in memory wins.
+      // Of equal values, the first in memory wins.
       if (other > value || (other == value && (b < j || (b == j && a < i)))) {
         return false;
       }

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Keypoints of the distance field: places where its graph bends most, in free
-// space as well as on walls ([Millane2019], Sec. IV-B). The determinant of the
-// Hessian of the smoothed field, in units of cells, is searched for local
-// extrema of its magnitude; the signs of the Hessian's eigenvalues give the
-// class. Heuristic; linear in the number of cells (times: place_benchmark).
+// Keypoints of the distance field: points where its graph bends most, in free
+// space as well as on walls ([Millane2019], Sec. IV-B). They are the local
+// maxima of the magnitude of the determinant of the smoothed field's Hessian,
+// in units of cells; the signs of its eigenvalues give the kind. Heuristic;
+// linear in the number of cells (times: place_benchmark).
 
 #ifndef CARTOGRAPHER_SDF_FEATURE_KEYPOINT_H_
 #define CARTOGRAPHER_SDF_FEATURE_KEYPOINT_H_
@@ -19,18 +19,20 @@
 namespace cartographer_sdf {
 
 struct KeypointOptions {
-  // Standard deviation of the Gaussian before differentiation [cells]. The
-  // paper leaves it open. Larger: fewer, smoother keypoints.
+  // Standard deviation of the Gaussian applied before differentiation [cells].
+  // The paper does not specify it. Larger: fewer, smoother keypoints.
   double smoothing_sigma_cells = 3.;
   // Least magnitude of the determinant [1 / cells^2]; Table I.
   double detection_threshold = 0.0025;
   // A keypoint is extremal within a square of this half width [cells].
   int non_maximum_suppression_cells = 4;
-  // Keypoints this near to a border between free and unobserved cells are
-  // dropped [cells]; walls are no such border. The paper leaves it open.
+  // Keypoints within this distance of a border between free and unobserved
+  // cells are dropped [cells]; walls are no such border. The paper does not
+  // specify it.
   double unobserved_border_cells = 1.5;
-  // Keypoints farther from any wall are dropped [m], which is how
-  // [Millane2019] measures what free space is worth. No lidar sees this far.
+  // Keypoints farther than this from every wall are dropped [m]; [Millane2019]
+  // measures the value of free space this way. No lidar sees as far as the
+  // default.
   double max_clearance_meters = 1000.;
 };
 [[nodiscard]] std::string Validate(const KeypointOptions& options);
@@ -46,12 +48,13 @@ struct Keypoint {
   double strength;  // magnitude of the determinant [1 / cells^2]
 };
 
-// The field in cells, convolved with a Gaussian; beyond the rim the rim's value
-// is continued.
+// Returns the field in units of cells, convolved with a Gaussian; beyond the
+// rim, the rim's values are repeated.
 [[nodiscard]] Eigen::ArrayXXf SmoothField(const DistanceField& field,
                                           double sigma_cells);
 
-// In the order of memory (j, then i). `smoothed` is SmoothField's result.
+// Returns keypoints in memory order (j, then i). `smoothed` is SmoothField's
+// result.
 [[nodiscard]] std::vector<Keypoint> DetectKeypoints(
     const KeypointOptions& options, const DistanceField& field,
     const Eigen::ArrayXXf& smoothed);

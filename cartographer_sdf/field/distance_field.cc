@@ -29,9 +29,9 @@ BoolArray PadWithFalse(const BoolArray& cells, const int margin) {
   return padded;
 }
 
-// Squared distances [cells] from occupied cells to the nearest cell that is
-// not. Walls are thin: most are found close by, at a fraction of what the
-// transform of the whole grid takes. There must be a cell that is not occupied.
+// Squared distances [cells^2] from occupied cells to the nearest cell that is
+// not. Walls are thin, so most are found nearby, at a fraction of the cost of
+// transforming the whole grid. At least one cell must not be occupied.
 class SquaredDepths {
  public:
   explicit SquaredDepths(const BoolArray& occupied) : occupied_(occupied) {}
@@ -49,10 +49,10 @@ class SquaredDepths {
   }
 
  private:
-  // Enough for walls of twice as many cells: 40 cm at the usual 5 cm a cell.
+  // Enough for walls of twice this many cells: 40 cm at the usual 5 cm a cell.
   static constexpr int kMaxReach = 4;
 
-  // Of the cells up to `reach` away along each axis.
+  // Searches the cells up to `reach` away along each axis.
   int NearestWithin(const Eigen::Index i, const Eigen::Index j,
                     const int reach) const {
     int nearest = std::numeric_limits<int>::max();

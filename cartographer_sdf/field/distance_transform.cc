@@ -16,8 +16,8 @@ constexpr int kMaxSide = 32767;
 // one. All squared distances fit 32 bits.
 constexpr int kNoSite = kMaxSide + 1;
 
-// Distance along each row to the nearest true cell; whole columns at a time, as
-// they are contiguous.
+// Returns the distance along each row to the nearest true cell; processes whole
+// columns at a time, as they are contiguous.
 Eigen::ArrayXXi RowDistances(const BoolArray& sites) {
   const Eigen::Index rows = sites.rows(), cols = sites.cols();
   Eigen::ArrayXXi distances(rows, cols);
@@ -44,8 +44,9 @@ class LowerEnvelope {
   explicit LowerEnvelope(const int size)
       : g_(size), vertex_(size), begin_(size) {}
 
-  // Replaces g, the line, by the envelope's value at each of its cells. Nothing
-  // reaches across a site, so each stretch between two is a line of its own.
+  // Replaces g, the line, by the envelope's value at each of its cells. No
+  // parabola reaches across a site, so each stretch between two sites is
+  // evaluated separately.
   void Evaluate(int* const line) {
     const int n = static_cast<int>(g_.size());
     std::copy(line, line + n, g_.begin());
@@ -93,7 +94,8 @@ class LowerEnvelope {
   int FirstBelow(const int left, const int right) const {
     const int numerator = right * right - left * left + g_[right] * g_[right] -
                           g_[left] * g_[left];
-    // Not negative: the caller dropped all that `right` beats at their begin.
+    // Not negative: the caller removed all parabolas that lie above that of
+    // `right` where they begin.
     return numerator / (2 * (right - left)) + 1;
   }
 

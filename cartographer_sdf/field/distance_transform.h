@@ -14,9 +14,9 @@
 
 namespace cartographer_sdf {
 
-// Squared distance from each cell's centre to the nearest centre of a cell
-// that is true in `sites` [cells^2]. At least one cell must be true; at most
-// 32767 cells a side.
+// Returns the squared distance from each cell's centre to the nearest centre of
+// a cell that is true in `sites` [cells^2]. At least one cell must be true; at
+// most 32767 cells a side.
 [[nodiscard]] Eigen::ArrayXXi SquaredDistanceTransform(const BoolArray& sites);
 
 }  // namespace cartographer_sdf

@@ -17,7 +17,7 @@ namespace {
 // rounding errors of the centred coordinates.
 constexpr double kRounding = 64. * std::numeric_limits<double>::epsilon();
 
-// What the pairs add up to.
+// Total weight and weighted means of the pairs.
 struct PairMeans {
   double total_weight = 0.;
   Eigen::Vector2d reference = Eigen::Vector2d::Zero();
@@ -28,10 +28,10 @@ struct PairMoments {
   // Weighted sums of the products of the centred query and reference.
   double dot = 0.;
   double cross = 0.;
-  // Of either squared.
+  // Weighted sums of squares of the centred points.
   double spread_reference = 0.;
   double spread_query = 0.;
-  // The largest coordinate that rounding is relative to.
+  // Largest norm of a point; rounding errors scale with it.
   double size = 0.;
 };
 
@@ -76,7 +76,7 @@ PairMoments FindMoments(const std::vector<Eigen::Vector2d>& p_reference,
   return moments;
 }
 
-// Whether the rotation stands out of the rounding errors.
+// Whether the rotation stands out from rounding errors.
 bool HasRotation(const PairMoments& moments, const double total_weight) {
   // A centred coordinate is off by up to `size` times the rounding.
   const double noise = kRounding * moments.size;

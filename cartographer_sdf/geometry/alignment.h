@@ -12,14 +12,14 @@
 
 namespace cartographer_sdf {
 
-// The T_reference_query that minimises the weighted sum of
+// Returns the T_reference_query that minimises the weighted sum of
 // |p_reference[k] - T_reference_query * p_query[k]|^2: exact, closed form,
-// linear in the number of pairs; the plane's case of [Umeyama1991] without
-// scale. Weights are not negative; none given means equal ones.
+// linear in the number of pairs; the planar case of [Umeyama1991] without
+// scale. Weights must not be negative; an empty vector means equal weights.
 //
-// None where the rotation is undetermined: fewer than two pairs, or pairs of
-// positive weight that coincide (in either frame) to within rounding, or point
-// sets that no rotation aligns better than another.
+// Returns nullopt if the rotation is undetermined: fewer than two pairs, or
+// pairs of positive weight that coincide (in either frame) to within rounding,
+// or point sets that every rotation aligns equally well.
 [[nodiscard]] std::optional<Rigid2> AlignPointPairs(
     const std::vector<Eigen::Vector2d>& p_reference,
     const std::vector<Eigen::Vector2d>& p_query,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// When two poses of the same pair of frames count as one, and the selection of
-// distinct ones.
+// Decides when two poses of the same pair of frames count as one, and selects
+// distinct poses.
 
 #ifndef CARTOGRAPHER_SDF_GEOMETRY_DISTINCT_POSES_H_
 #define CARTOGRAPHER_SDF_GEOMETRY_DISTINCT_POSES_H_
@@ -24,8 +24,8 @@ struct PoseTolerance {
   double rotation;  // [rad]
 };
 
-// Whether both poses take the point `p_b` to within the tolerance of each other
-// and differ in rotation by less than the tolerance.
+// Returns whether the images of `p_b` under both poses, and their rotations,
+// differ by less than the tolerance.
 [[nodiscard]] inline bool AreNear(const Rigid2& T_a_b,
                                   const Rigid2& other_T_a_b,
                                   const Eigen::Vector2d& p_b,
@@ -37,7 +37,7 @@ struct PoseTolerance {
 
 constexpr size_t kNoLimit = std::numeric_limits<size_t>::max();
 
-// The first of every group of items whose poses are near each other, at most
+// Greedily keeps items whose pose is near that of no item kept before, up to
 // `max_num_items`. `items` come in order of preference; pose_of(item) is (a <-
 // b).
 template <typename Item, typename PoseOf>

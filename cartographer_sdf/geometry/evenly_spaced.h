@@ -10,8 +10,8 @@
 
 namespace cartographer_sdf {
 
-// Ascending indices of at most `count` of `size` items: the middles of equal
-// parts.
+// Returns ascending indices of at most `count` of `size` items: the centres of
+// equal parts.
 [[nodiscard]] inline std::vector<size_t> EvenlySpacedIndices(
     const size_t size, const size_t count) {
   const size_t num_chosen = std::min(size, count);

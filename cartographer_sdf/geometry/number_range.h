@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// For Validate of structs of options.
+// Range checks for the Validate functions of options.
 
 #ifndef CARTOGRAPHER_SDF_GEOMETRY_NUMBER_RANGE_H_
 #define CARTOGRAPHER_SDF_GEOMETRY_NUMBER_RANGE_H_
@@ -12,7 +12,7 @@
 
 namespace cartographer_sdf {
 
-// A number, and the least and the largest that it may be.
+// A number with the least and the largest value allowed.
 struct NumberRange {
   template <typename T>
   NumberRange(const char* const name, const T value, const double least,
@@ -28,8 +28,8 @@ struct NumberRange {
   double most;
 };
 
-// "NAME must lie between LEAST and MOST", of the first number that does not, or
-// nothing.
+// Returns "NAME must lie between LEAST and MOST" for the first number out of
+// range, or an empty string.
 [[nodiscard]] inline std::string FirstOutside(
     const std::initializer_list<NumberRange> ranges) {
   for (const NumberRange& range : ranges) {

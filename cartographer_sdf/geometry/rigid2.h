@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Rigid motions of the plane, metres and radians. `T_a_b` takes the
+// Rigid motions of the plane, in metres and radians. `T_a_b` maps the
 // coordinates of a point in frame b to its coordinates in frame a:
 // p_a = T_a_b * p_b, and T_a_c = T_a_b * T_b_c.
 
@@ -14,7 +14,7 @@
 
 namespace cartographer_sdf {
 
-// The same angle in (-pi, pi].
+// Returns the equivalent angle in (-pi, pi].
 [[nodiscard]] double NormalizeAngle(double angle);
 
 class Rigid2 {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Rigid motions of space, as Cartographer stores them even for 2D maps, and
-// their way to the plane and back. Names as in rigid2.h.
+// Rigid motions of space, which Cartographer stores even for 2D maps, and their
+// conversion to the plane and back. Names as in rigid2.h.
 
 #ifndef CARTOGRAPHER_SDF_GEOMETRY_RIGID3_H_
 #define CARTOGRAPHER_SDF_GEOMETRY_RIGID3_H_
@@ -16,7 +16,7 @@ namespace cartographer_sdf {
 
 struct Rigid3 {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-  // Of unit norm.
+  // Has unit norm.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 
   [[nodiscard]] static Rigid3 Rotation(const Eigen::Quaterniond& rotation) {

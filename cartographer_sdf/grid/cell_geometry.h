@@ -28,8 +28,8 @@ struct CellGeometry {
   [[nodiscard]] bool Contains(const Eigen::Array2i& cell) const {
     return (cell >= 0).all() && (cell < size).all();
   }
-  // Continuous cell coordinates of a point of the grid frame: integers are
-  // centres of cells.
+  // Returns the continuous cell coordinates of a point in the grid frame;
+  // integers are cell centres.
   [[nodiscard]] Eigen::Vector2d GridToCells(
       const Eigen::Vector2d& p_grid) const {
     return p_grid / resolution - Eigen::Vector2d::Constant(0.5);
@@ -38,11 +38,12 @@ struct CellGeometry {
       const Eigen::Vector2d& cells) const {
     return resolution * (cells + Eigen::Vector2d::Constant(0.5));
   }
-  // The centre of a cell in the submap frame [m].
+  // Returns the centre of a cell in the submap frame [m].
   [[nodiscard]] Eigen::Vector2d CellCentre(const Eigen::Array2i& cell) const {
     return T_submap_grid * CellsToGrid(cell.matrix().cast<double>());
   }
-  // The cell that holds a point of the submap frame; it may lie outside.
+  // Returns the cell that contains a point in the submap frame; it may lie
+  // outside the grid.
   [[nodiscard]] Eigen::Array2i CellAt(const Eigen::Vector2d& p_submap) const {
     const Eigen::Vector2d p_grid = T_submap_grid.Inverse() * p_submap;
     return (p_grid.array() / resolution).floor().cast<int>();

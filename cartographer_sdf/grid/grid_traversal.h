@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Which cells a line segment crosses, in order. [Amanatides1987], "A fast voxel
-// traversal algorithm for ray tracing".
+// Visits the cells that a line segment crosses, in order. [Amanatides1987], "A
+// fast voxel traversal algorithm for ray tracing".
 
 #ifndef CARTOGRAPHER_SDF_GRID_GRID_TRAVERSAL_H_
 #define CARTOGRAPHER_SDF_GRID_GRID_TRAVERSAL_H_
@@ -15,9 +15,9 @@
 namespace cartographer_sdf {
 
 // Calls visit(i, j, t) for each cell from that of `begin` to that of `end`
-// until it returns false. Points are metres in the grid frame divided by the
-// resolution: cell (i, j) is [i, i + 1) x [j, j + 1). The segment enters the
-// cell at begin + t * (end - begin), t in [0, 1]. Consecutive cells share a
+// until `visit` returns false. Points are metres in the grid frame divided by
+// the resolution: cell (i, j) is [i, i + 1) x [j, j + 1). The segment enters
+// the cell at begin + t * (end - begin), t in [0, 1]. Consecutive cells share a
 // side; a segment through a corner visits one of the two cells beside it.
 template <typename Visitor>
 void TraverseCells(const Eigen::Vector2d& begin, const Eigen::Vector2d& end,
@@ -41,7 +41,7 @@ void TraverseCells(const Eigen::Vector2d& begin, const Eigen::Vector2d& end,
   int remaining[2] = {std::abs(last[0] - cell[0]), std::abs(last[1] - cell[1])};
   double t = 0.;
   while (visit(cell[0], cell[1], t) && remaining[0] + remaining[1] > 0) {
-    // Counting the borders left makes rounding unable to miss the last cell.
+    // Counting the remaining borders reaches the last cell despite rounding.
     const int k =
         remaining[1] == 0 || (remaining[0] != 0 && t_next[0] < t_next[1]) ? 0
                                                                           : 1;

@@ -12,8 +12,8 @@ namespace cartographer_sdf {
 
 using BoolArray = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-// What a submap knows of its cells: how probably each is occupied, and whether
-// it was observed at all. Both arrays have the size of the geometry.
+// The occupancy probability of each cell of a submap, and whether the cell was
+// observed at all. Both arrays have the size of the geometry.
 struct OccupancyGrid {
   CellGeometry geometry;
   // In (0, 1) where known; meaningless elsewhere.
@@ -21,7 +21,7 @@ struct OccupancyGrid {
   BoolArray known;
 };
 
-// A grid of the given geometry of which nothing is known.
+// Returns a grid of the given geometry with all cells unknown.
 [[nodiscard]] inline OccupancyGrid UnknownGrid(const CellGeometry& geometry) {
   return OccupancyGrid{
       geometry,

@@ -9,8 +9,8 @@
 
 namespace cartographer_sdf {
 
-// Where a query submap lies in the frame of a reference submap, and how certain
-// that is.
+// The pose of a query submap in the frame of a reference submap, and how
+// certain it is.
 struct PairPose {
   SubmapId reference;
   SubmapId query;

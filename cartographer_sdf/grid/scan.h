@@ -11,16 +11,16 @@
 
 namespace cartographer_sdf {
 
-// What a planar range sensor sees at once, in its own frame [m]. Beams that
-// were lost are absent.
+// One scan of a planar range sensor, in the sensor frame [m]. Lost beams are
+// absent.
 struct Scan {
   // Points hit.
   std::vector<Eigen::Vector2f> returns;
-  // Where the beams without an echo end: as far as the sensor looks.
+  // End points of beams without an echo, at the range of the sensor.
   std::vector<Eigen::Vector2f> misses;
 };
 
-// A scan as it was inserted into a submap.
+// A scan and the pose at which it was inserted into a submap.
 struct PlacedScan {
   Rigid2 T_submap_sensor;
   Scan scan;

@@ -13,15 +13,15 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of probability 0.9, the host's limit (mapping/probability_values.h).
+// Log-odds of probability 0.9, the host's limit (mapping/probability_values.h).
 constexpr float kMaxLogOdds = 2.1972246f;
 
-// Sensors stay within this many cells of the origin, so that the indices of
-// cells, and differences of them, fit into an int.
+// Sensors must lie within this many cells of the origin, so that cell indices
+// and their differences fit into an int.
 constexpr double kMaxCoordinate = 1e9;
 
-// Cells that a grid grows by beyond what is needed, on each side: a robot that
-// drives on makes it grow every few metres, not with each scan.
+// Extra cells on each side when a grid grows, so that it grows every few metres
+// as the robot drives, not with every scan.
 constexpr int kMargin = 64;
 
 float LogOdds(const double probability) {
@@ -101,7 +101,7 @@ bool ScanGrid::Insert(const Rigid2& T_submap_sensor, const Scan& scan) {
   for (const Beam& beam : beams) box.extend(CellOf(beam.end));
   if (!GrowToHold(box)) return false;
   ++num_scans_;
-  // Hits come first, so that no beam that passes by can undo them.
+  // Hits come first, so that no passing beam can undo them.
   const float hit = LogOdds(options_.hit_probability);
   for (const Beam& beam : beams) {
     const Eigen::Vector2i cell = CellOf(beam.end);
@@ -124,7 +124,7 @@ OccupancyGrid ScanGrid::Crop() const {
       if (cells_[Index(i, j)].last_scan != 0) box.extend(Eigen::Vector2i(i, j));
     }
   }
-  // The host's grids have a cell at least.
+  // The host's grids have at least one cell.
   if (box.isEmpty())
     return UnknownGrid({{1, 1}, options_.resolution, Rigid2()});
   OccupancyGrid grid =

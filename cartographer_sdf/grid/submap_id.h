@@ -9,8 +9,8 @@
 
 namespace cartographer_sdf {
 
-// Cartographer's name of a submap: the trajectory that made it, and its number
-// within.
+// Cartographer's identifier of a submap: its trajectory and its index within
+// the trajectory.
 struct SubmapId {
   int trajectory = 0;
   int index = 0;

@@ -8,11 +8,11 @@
 
 namespace cartographer_sdf {
 
-// The content of a grid turned about the submap's origin, in cells that keep
-// their direction, as if the submap had been built from there on another
-// heading: each cell takes over the cell of the source that holds its centre
-// (nearest sampling, probability and knowledge alike). A point p of the source
-// is found at Rigid2(0, 0, angle) * p, to half the diagonal of a cell.
+// Returns the grid rotated about the submap's origin, on cells with unchanged
+// axes, as if the submap had been built with another heading. Each cell copies
+// probability and knowledge from the source cell that contains its centre
+// (nearest neighbour). A point p of the source moves to
+// Rigid2(0, 0, angle) * p, to within half the diagonal of a cell.
 [[nodiscard]] OccupancyGrid TurnedGrid(const OccupancyGrid& source,
                                        double angle);
 

@@ -11,16 +11,16 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of the smaller observed area; less says little.
+// Least overlap, as a fraction of the smaller observed area.
 constexpr double kMinOverlap = 0.4;
 
-// How uncertain a prediction may be [m]: what registration recovers with ease
-// where the pair is to agree, half of that where it is held against the
-// placement.
+// Largest standard deviation of a prediction [m]: an offset that registration
+// recovers with ease for pairs that may agree, less than half of that for pairs
+// that count against the placement.
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
 
-// A pair of places that the placement lays over each other.
+// A pair of places that the placement makes overlap.
 struct PairToCheck {
   const Place* reference;
   const Place* query;
@@ -39,8 +39,8 @@ class Confirmer {
     }
   }
 
-  // Verifies the pairs that follow from the votes so far, nearest first; false
-  // where there is none left.
+  // Verifies the pairs that the votes so far predict, nearest first; returns
+  // false if none is left.
   bool Spread(const size_t max_num_pairs, const Executor& executor,
               Confirmation* const confirmation) {
     std::vector<PairToCheck> pairs = PairsToCheck();
@@ -87,7 +87,7 @@ class Confirmer {
     return pairs;
   }
 
-  // By the vote nearest to both.
+  // Predicts the pose of the pair by the vote nearest to both.
   [[nodiscard]] std::optional<PairToCheck> Predict(const Place& reference,
                                                    const Place& query) const {
     const PairPose* nearest = nullptr;
@@ -118,14 +118,14 @@ class Confirmer {
         DriftSigma(task_.consistency, pair->way) > kMaxContradictionSigma) {
       return;
     }
-    // Twice what a single match may have: furniture moves, people walk.
+    // Twice the limit of a single match: furniture moves, people walk.
     pair->contradicting = FindContradiction(
         task_.match.verification,
         2. * task_.match.verification.judgement.max_contradiction_ratio,
         *pair->reference, *pair->query, pair->T_reference_query);
   }
 
-  // The match at the predicted pose where verification accepts it near there.
+  // Returns the match if verification accepts it near the predicted pose.
   [[nodiscard]] std::optional<Match> VerifyPrediction(
       const PairToCheck& pair) const {
     std::optional<VerifiedPose> verified =

@@ -13,7 +13,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// A loop closure is as uncertain as the way through half a submap [m].
+// A loop closure is as uncertain as driving through half a submap [m].
 constexpr double kClosureLength = 5.;
 constexpr double kNoWay = std::numeric_limits<double>::infinity();
 
@@ -46,7 +46,7 @@ Edges MakeEdges(const PoseGraph& pose_graph,
     }
     previous = &current;
   }
-  // A constraint with a node is one with the submaps that hold it.
+  // A constraint with a node relates its submap to those that contain the node.
   std::map<NodeId, std::vector<size_t>> holders;
   for (const Constraint& constraint : pose_graph.constraints) {
     const auto submap = indices.find(constraint.submap);
@@ -67,7 +67,7 @@ Edges MakeEdges(const PoseGraph& pose_graph,
   return edges;
 }
 
-// Dijkstra's shortest ways.
+// Dijkstra's algorithm.
 void FindShortestWays(const Edges& edges, const size_t start,
                       double* const distances) {
   std::fill_n(distances, edges.size(), kNoWay);

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How far apart two submaps of a map are along what relates them: the distance
-// driven, with shortcuts where a loop was closed. Submaps that are near in this
-// sense have a well-known relative pose, however long ago they were driven;
-// those far apart may have drifted.
+// Distances between the submaps of a map along the pose graph: the distance
+// driven, with shortcuts at loop closures. Submaps that are near in this sense
+// have an accurate relative pose, however far apart in time; those far apart
+// may have drifted.
 
 #ifndef CARTOGRAPHER_SDF_LOCALIZATION_DRIVEN_DISTANCES_H_
 #define CARTOGRAPHER_SDF_LOCALIZATION_DRIVEN_DISTANCES_H_
@@ -21,19 +21,20 @@ namespace cartographer_sdf {
 
 class DrivenDistances {
  public:
-  // Of the submaps of the pose graph; `odometry` has how far the robot had
-  // driven. Shortest ways between all of them: n^2 numbers, some milliseconds
-  // for a hundred submaps.
+  // Computes the shortest paths between all submaps of the pose graph: n^2
+  // numbers, some milliseconds for a hundred submaps. `odometry` has the
+  // distances driven.
   DrivenDistances(const PoseGraph& pose_graph,
                   const std::map<SubmapId, OdometryPose>& odometry);
 
-  // [m]; none where nothing relates the two. Both must be in the map.
+  // Returns the distance [m], nullopt if no path connects the two. Both must be
+  // in the pose graph.
   [[nodiscard]] std::optional<double> Between(const SubmapId& a,
                                               const SubmapId& b) const;
 
  private:
   std::map<SubmapId, size_t> indices_;
-  // Row by row; infinite where there is no way.
+  // Row by row; infinite where there is no path.
   std::vector<double> distances_;
 };
 

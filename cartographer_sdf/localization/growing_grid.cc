@@ -36,7 +36,7 @@ const Rigid2& GrowingGrid::T_local_submap() const {
 std::optional<OccupancyGrid> GrowingGrid::Copy() const {
   OccupancyGrid grid = grid_.Crop();
   if (!grid.known.any()) return std::nullopt;
-  // Crop() has it in the local frame.
+  // Crop() returns it in the local frame.
   Rigid2& T_submap_grid = grid.geometry.T_submap_grid;
   T_submap_grid = T_local_submap().Inverse() * T_submap_grid;
   return grid;

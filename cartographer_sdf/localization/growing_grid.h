@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What a robot has seen on the last stretch that it drove, as a submap of its
-// own, for as long as Cartographer has no finished one.
+// A submap of the stretch that the robot drove last, for as long as
+// Cartographer has no finished one.
 
 #ifndef CARTOGRAPHER_SDF_LOCALIZATION_GROWING_GRID_H_
 #define CARTOGRAPHER_SDF_LOCALIZATION_GROWING_GRID_H_
@@ -17,30 +17,31 @@
 
 namespace cartographer_sdf {
 
-// A scan as local SLAM placed it.
+// A scan with its pose by local SLAM.
 struct DrivenScan {
   NodeId node;
   Rigid2 T_local_node;
   Rigid2 T_local_sensor;
   Scan scan;
-  double distance_driven = 0.;  // up to it [m]
+  double distance_driven = 0.;  // up to the scan [m]
 };
 
 // Thread-compatible.
 class GrowingGrid {
  public:
-  // Once the scans cover more than `window` of driving [m], those of the older
-  // half are let go.
+  // Once the scans span more than `window` [m] of driving, drops those of the
+  // older half.
   GrowingGrid(const ScanGridOptions& options, double window);
 
-  // In the order in which they were driven. A scan that ScanGrid does not take
-  // is kept, but not drawn.
+  // Scans must come in driving order. A scan that ScanGrid rejects is kept, but
+  // not drawn.
   void Insert(DrivenScan scan);
   [[nodiscard]] const std::deque<DrivenScan>& scans() const { return scans_; }
-  // The frame of the submap: that of the oldest node. There must be one.
+  // Returns the frame of the submap: that of the oldest node. There must be
+  // one.
   [[nodiscard]] const Rigid2& T_local_submap() const;
-  // In that frame, with cells along the axes of the local frame. None where
-  // nothing was seen.
+  // Returns the grid in that frame, with cells along the axes of the local
+  // frame; nullopt if nothing was observed.
   [[nodiscard]] std::optional<OccupancyGrid> Copy() const;
 
  private:

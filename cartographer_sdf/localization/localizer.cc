@@ -18,7 +18,7 @@ bool ByIds(const Match& a, const Match& b) {
   return IsBeforeByIds(a.pair, b.pair);
 }
 
-// Where in the map a placement's strongest vote puts its place.
+// Describes where in the map the strongest vote of a placement puts its place.
 std::string DescribeWhere(const MapLayout& map,
                           const std::vector<Match>& matches,
                           const Placement& placement) {
@@ -85,12 +85,12 @@ class Localizer {
     return rounds;
   }
 
-  // Round by round, until the answer is certain.
+  // Searches round by round, until the answer is certain.
   void Search() {
     std::vector<Match> voting;
     for (const std::map<SubmapId, Place>& places : Rounds()) {
       for (Match& match : match_places_(places, clock_.Begin("match"))) {
-        // Likely, but for the rival.
+        // Likely, except for the rival.
         num_ambiguous_ +=
             match.verdict == Verdict::kAmbiguous &&
             match.pair.score >= task_.match.verification.judgement.min_score;
@@ -141,7 +141,7 @@ class Localizer {
         static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
     result_.contradictions = std::move(confirmation.contradicting);
     if (confirmation.agreeing.empty()) return;
-    // What was matched elsewhere and is confirmed here has two matches.
+    // A pair matched elsewhere and confirmed here has two matches.
     for (Match& match : confirmation.agreeing) {
       result_.matches.push_back(std::move(match));
     }
@@ -149,8 +149,8 @@ class Localizer {
     Vote();
   }
 
-  // Of the places that the best placement puts into what the map has seen, the
-  // fraction that contradicts it.
+  // Returns the fraction of the query's places with a vote or a contradiction
+  // that contradict the best placement.
   [[nodiscard]] double ContradictingFraction() const {
     std::set<SubmapId> agreeing, contradicting;
     for (const size_t vote : result_.placements.front().votes) {
@@ -189,8 +189,8 @@ class Localizer {
     }
   }
 
-  // Counts the votes for and against the best placement; its best rival, null
-  // where it has none.
+  // Counts the votes for and against the best placement; returns its best
+  // rival, null if it has none.
   const Placement* CountVotes() {
     const Placement& best = result_.placements.front();
     const Placement* rival = nullptr;
@@ -229,8 +229,8 @@ class Localizer {
                  best.score, where, options.min_score));
     } else if (fraction > options.max_contradicting_fraction) {
       Refuse(LocalizationVerdict::kContradicted,
-             absl::StrFormat("contradicted: alike at %s, but what should be "
-                             "near there is not, of %.0f %% of the places",
+             absl::StrFormat("contradicted: alike at %s, but the surroundings "
+                             "of %.0f %% of the places do not match",
                              where, 100. * fraction));
     } else if (rival != nullptr &&
                best.score - rival->score < options.min_lead) {

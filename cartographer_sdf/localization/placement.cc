@@ -14,7 +14,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of the cycle through both maps.
+// Checks the cycle of two votes through both maps.
 CycleVerdict CheckWay(const ConsistencyOptions& consistency,
                       const MapPair& maps, const PairPose& a, const PairPose& b,
                       const double way_in_query) {
@@ -37,8 +37,8 @@ CycleVerdict CheckWay(const ConsistencyOptions& consistency,
       renamed_a, renamed_b);
 }
 
-// What two votes say of each other: consistent ones agree, inconsistent ones
-// exclude each other.
+// Relates two votes: consistent ones agree, inconsistent ones exclude each
+// other.
 CycleVerdict Relate(const PlacementOptions& options,
                     const ConsistencyOptions& consistency, const MapPair& maps,
                     const PairPose& a, const PairPose& b) {
@@ -50,13 +50,13 @@ CycleVerdict Relate(const PlacementOptions& options,
               maps.query->centroids.at(b.query),
               {options.same_distance_meters, options.same_rotation});
   const CycleVerdict verdict = CheckWay(consistency, maps, a, b, *way_in_query);
-  // Nearly the same place is no other one; one of the two is imprecise.
+  // Nearly equal poses do not exclude each other; one of the two is imprecise.
   if (verdict == CycleVerdict::kInconsistent && is_same) {
     return CycleVerdict::kUninformative;
   }
-  // Else the map may have drifted between the two, but not the query: either
-  // the map shows one place twice, or two places are alike. Nobody can tell,
-  // except of what is one place of the query.
+  // Otherwise the map may have drifted between the two, but not the query:
+  // either the map contains one place twice, or two places look alike. This is
+  // decidable only for votes on one place of the query.
   if (verdict != CycleVerdict::kUninformative ||
       *way_in_query > options.independent_distance_meters) {
     return verdict;
@@ -64,7 +64,7 @@ CycleVerdict Relate(const PlacementOptions& options,
   return is_same ? CycleVerdict::kConsistent : CycleVerdict::kInconsistent;
 }
 
-// What two groups of votes say of each other.
+// Returns the support of the votes in `a` by those in `b`.
 double SupportBetween(const VerdictTable& votes, const std::vector<size_t>& a,
                       const std::vector<size_t>& b) {
   double support = 0.;
@@ -72,7 +72,8 @@ double SupportBetween(const VerdictTable& votes, const std::vector<size_t>& a,
   return support;
 }
 
-// Groups that began far apart may have met.
+// Merges groups that support each other: those that began far apart may have
+// met.
 void MergeGroups(const VerdictTable& votes,
                  std::vector<std::vector<size_t>>* const all_groups) {
   std::vector<std::vector<size_t>>& groups = *all_groups;
@@ -117,8 +118,8 @@ std::vector<std::vector<size_t>> GroupVotes(const VerdictTable& votes) {
   return groups;
 }
 
-// Evidence of different places: each place of the query by its votes, less
-// where a better one is near.
+// Sums the evidence of distinct places: each place of the query counts by its
+// votes, and less if a better one is near.
 double ScoreOf(const PlacementOptions& options, const MapPair& maps,
                const std::vector<PairPose>& closures,
                const std::vector<size_t>& votes) {
@@ -152,8 +153,8 @@ double ScoreOf(const PlacementOptions& options, const MapPair& maps,
   return sum;
 }
 
-// Fits the places that meet: the middle of each, and a point beside it that
-// holds its rotation.
+// Fits the pose to the votes: four points around the centroid of each place, so
+// that its rotation counts too.
 Rigid2 FitVotes(const MapPair& maps, const std::vector<PairPose>& closures,
                 const std::vector<size_t>& votes) {
   constexpr double kLever = 5.;  // [m], about the size of what is matched
@@ -174,7 +175,7 @@ Rigid2 FitVotes(const MapPair& maps, const std::vector<PairPose>& closures,
   }
   const std::optional<Rigid2> fitted = AlignPointPairs(p_map, p_query, weights);
   if (fitted) return *fitted;
-  // Votes that cancel out, such as half turns of each other.
+  // The votes cancel out, such as half turns of each other.
   const PairPose& first = closures[votes.front()];
   return PlaceByVote(maps, first, first.query) *
          maps.query->T_map_submap.at(first.query).Inverse();
@@ -217,7 +218,8 @@ std::vector<Placement> FindPlacements(const PlacementOptions& options,
   });
   std::vector<Placement> placements;
   for (std::vector<size_t>& group : GroupVotes(votes)) {
-    // In the order of ids: sums round the same whatever the order was.
+    // In the order of ids, so that sums round the same whatever the input
+    // order.
     std::sort(group.begin(), group.end(), [&](const size_t a, const size_t b) {
       return IsBeforeByIds(closures[a], closures[b]);
     });

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Where does one map lie in another? Each accepted match of a submap of either
-// is a vote for a pose of the whole map. Votes that agree, locally and as far
-// as either map may have drifted between them, make a placement. It is believed
-// only where enough different places support it, and clearly more than any
+// Finds placements of one map in another. Each match of a submap of one with a
+// submap of the other is a vote for a pose of the whole map. Votes that agree,
+// allowing for the drift of either map between them, form a placement. It is
+// accepted only if enough distinct places support it, and clearly more than any
 // other placement that it excludes (localizer.h).
 
 #ifndef CARTOGRAPHER_SDF_LOCALIZATION_PLACEMENT_H_
@@ -27,36 +27,38 @@
 namespace cartographer_sdf {
 
 struct PlacementOptions {
-  // Places of the query nearer together than this tell partly the same, in
-  // proportion [m].
+  // Places of the query nearer together than this are partly redundant, in
+  // proportion to their distance [m].
   double independent_distance_meters = 10.;
-  // One match counts at most so much, however certain it seems; log-odds.
+  // Largest score that counts for one match, however certain it seems;
+  // log-odds.
   double max_place_score = 10.;
-  // A place counts by its best match with a submap of the map, and with this
-  // fraction of the scores of the others: submaps of the map that overlap tell
-  // partly the same, but a query that consists of one place has no more.
+  // A place counts with the score of its best match, plus this fraction of the
+  // scores of its other matches: overlapping submaps of the map are partly
+  // redundant, but a query of a single place has no other evidence.
   double further_match_weight = 0.;
-  // Least score of all places that speak for the placement; log-odds. Above
-  // what look-alikes in other buildings reach.
+  // Least total score of the places that support a placement; log-odds. Above
+  // the scores that perceptual aliasing in other buildings reaches.
   double min_score = 6.5;
   // Least lead over the best placement that it excludes; log-odds.
   double min_lead = 4.;
-  // Of the places of the query that the placement puts into what the map has
-  // seen: the largest fraction that may contradict it.
+  // Largest fraction of the query's places in the observed area of the map that
+  // may contradict the placement.
   double max_contradicting_fraction = 0.3;
-  // Poses of a place that differ by less are the same [m], [rad].
+  // Poses of a place that differ by less than this count as the same [m],
+  // [rad].
   double same_distance_meters = 1.;
   double same_rotation = 0.2;
-  // Least area that the query must have seen, submap by submap [m^2]; below it
-  // the reason is that too little was seen.
+  // Least observed area of the query, summed over its submaps [m^2]; below it,
+  // the verdict is kTooLittleSeen.
   double min_observed_area = 20.;
 };
 [[nodiscard]] std::string Validate(const PlacementOptions& options);
 
-// Where the submaps of a map are, as far as localization needs it.
+// The layout of a map's submaps, as localisation needs it.
 struct MapLayout {
   std::map<SubmapId, Rigid2> T_map_submap;
-  // Centroids of what the places have observed, in their submap frames.
+  // Centroids of the observed areas of the places, in their submap frames.
   std::map<SubmapId, Eigen::Vector2d> centroids;
   DrivenDistances distances;
 };
@@ -65,33 +67,33 @@ struct MapLayout {
     const std::map<SubmapId, OdometryPose>& odometry,
     const std::map<SubmapId, Place>& places);
 
-// Trajectories of the two are different ones even where their ids are equal.
-// Neither is owned.
+// Trajectories of the two are distinct even if their ids are equal. Neither is
+// owned.
 struct MapPair {
   const MapLayout* map;
   const MapLayout* query;
 };
 
 struct Placement {
-  // The pose of the query's map frame in the map frame that fits the votes
-  // best, where either map is bent.
+  // The pose of the query's map frame in the map frame; the best fit to the
+  // votes where either map is bent.
   Rigid2 T_map_query;
-  // Evidence of all its places; log-odds of being right.
+  // Total evidence of its places; log-odds of being right.
   double score = 0.;
   std::vector<size_t> votes;  // indices, in the order of ids
-  // Whether it and the best one can't both hold: they put the same place of the
-  // query to different places, or odometry between their votes excludes it.
+  // Whether it and the best one cannot both hold: they put the same place of
+  // the query in different places, or odometry between their votes excludes it.
   bool is_rival = false;
 };
 
-// All placements that the votes (reference in the map, query in the query) add
-// up to, best first. Each vote is in one of them. Independent of the order of
-// the votes. Quadratic in their number.
+// Returns all placements that the votes form (reference in the map, query in
+// the query), best first. Each vote belongs to exactly one. Independent of the
+// order of the votes. Quadratic in their number.
 [[nodiscard]] std::vector<Placement> FindPlacements(
     const PlacementOptions& options, const ConsistencyOptions& consistency,
     const MapPair& maps, const std::vector<PairPose>& votes);
 
-// Where the vote puts the frame of a submap of the query into the map.
+// Returns the pose of submap `query` in the map frame according to the vote.
 [[nodiscard]] Rigid2 PlaceByVote(const MapPair& maps, const PairPose& vote,
                                  const SubmapId& query);
 

@@ -13,8 +13,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// How far a place reaches from its first node, and a scan from its node [m]:
-// grids stay of a size that fits into memory, whatever the file says.
+// Largest extent of a place from its first node, and of a scan from its node
+// [m], so that grids fit into memory whatever the file contains.
 constexpr double kMaxExtent = 50.;
 constexpr double kMaxRange = 60.;
 
@@ -52,14 +52,14 @@ std::map<NodeId, Node> NodesIn(const TimeWindow& window,
   return result;
 }
 
-// By local SLAM, which does not jump.
+// Prefers the pose by local SLAM, which does not jump.
 const Rigid2& SmoothPose(const Node& node) {
   return node.T_local_node ? *node.T_local_node : node.T_map_node;
 }
 
-// Nodes of the places: runs of `size` that overlap by half; the last is
-// shorter, unless the one before holds it already. A run that leads far away
-// ends early.
+// Groups nodes into places: runs of `size` that overlap by half. The last is
+// shorter, unless the previous one already contains it. A run that leads too
+// far away ends early.
 std::vector<std::vector<NodeId>> GroupNodes(
     const std::vector<NodeId>& nodes, const size_t size,
     const std::map<NodeId, Node>& poses) {
@@ -100,7 +100,7 @@ OccupancyGrid AddSubmap(const ScanPlaceOptions& options, const SubmapId& id,
     graph.constraints.push_back(
         Constraint{id, node, T_submap_node, kIntraTranslationWeight,
                    kIntraRotationWeight, Constraint::Tag::kIntraSubmap});
-    // Clouds have no beams without an echo.
+    // Point clouds contain no beams without an echo.
     scan_grid.Insert(T_submap_node, {clouds.at(node), {}});
   }
   graph.submap_poses[id] = first.T_map_node * T_node_submap;
@@ -114,7 +114,7 @@ OccupancyGrid AddSubmap(const ScanPlaceOptions& options, const SubmapId& id,
   return grid;
 }
 
-// By trajectory.
+// Returns the nodes with scans, by trajectory.
 std::map<int, std::vector<NodeId>> NodesWithScans(
     const std::map<NodeId, Node>& nodes,
     const std::map<NodeId, PointCloud2>& point_clouds) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Places made of the scans of a stretch of a map, as if it had just been
-// driven: for relocalising a robot that has no finished submap yet, and maps
-// that were saved without theirs.
+// Makes places from the scans of a stretch of a map, as if it had just been
+// driven: for relocalising a robot that has no finished submap yet, and for
+// maps saved without submaps.
 
 #ifndef CARTOGRAPHER_SDF_LOCALIZATION_SCAN_PLACES_H_
 #define CARTOGRAPHER_SDF_LOCALIZATION_SCAN_PLACES_H_
@@ -18,8 +18,8 @@
 namespace cartographer_sdf {
 
 struct ScanPlaceOptions {
-  // Scans of a place, as Cartographer's 2 * num_range_data; each place begins
-  // half of that after the one before.
+  // Scans per place, as Cartographer's 2 * num_range_data; each place begins
+  // half of that after the previous one.
   int num_scans = 120;
   // As Cartographer's grid_options_2d and range_data_inserter.
   double resolution_meters = 0.05;
@@ -28,24 +28,25 @@ struct ScanPlaceOptions {
 };
 [[nodiscard]] std::string Validate(const ScanPlaceOptions& options);
 
-// Of each trajectory, from its first node on [s]. No end: until its last one.
+// A time window of each trajectory, counted from its first node [s]. Without
+// `num_seconds`, it extends to the last node.
 struct TimeWindow {
   double start_seconds = 0.;
   std::optional<double> num_seconds;
 };
 
-// The nodes of a map in the window, and places made of their scans. It is a map
-// of its own: its submaps are these places, each in the tracking frame of
-// its first node, with intra-submap constraints to its nodes; nodes keep their
-// ids and poses, and the index of a submap is that of its first node. Empty
-// where no node with range data falls into the window.
+// The nodes of a map in the window, and places made from their scans, as a
+// separate map: its submaps are these places, each in the tracking frame of its
+// first node, with intra-submap constraints to its nodes; nodes keep their ids
+// and poses, and the index of a submap is that of its first node. Empty if no
+// node with range data falls into the window.
 struct ScanMap {
   DescribedMap map;
   std::map<SubmapId, OccupancyGrid> grids;
 };
 
-// Of a map with its point clouds. Trajectories other than the given ones, if
-// any are given, are left out.
+// `map` must have its point clouds. If `trajectories` is given, skips all
+// others.
 [[nodiscard]] ScanMap DescribeScans(
     const ScanPlaceOptions& options, const PlaceOptions& place_options,
     const MatchOptions& match_options, const DescribedMap& map,

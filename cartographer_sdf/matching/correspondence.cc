@@ -13,7 +13,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// All as if of the first kind where kinds may mix.
+// Where kinds may mix, all count as of the first kind.
 std::array<std::vector<int>, kNumKeypointKinds> IndicesByKind(
     const CorrespondenceOptions& options, const FeatureSet& set) {
   std::array<std::vector<int>, kNumKeypointKinds> indices;
@@ -56,13 +56,13 @@ bool IsAmbiguous(const CorrespondenceOptions& options,
       rival = &other;
     }
   }
-  // Without a rival there is nothing to be confused with, but nothing to be
-  // distinctive from either.
+  // Without a rival, nothing shows that the feature is distinctive.
   return rival == nullptr ||
          std::sqrt(best->first) > options.max_ratio * std::sqrt(rival->first);
 }
 
-// The nearest references of each query feature, among those given by index.
+// Appends the nearest references of each query feature, among those given by
+// index.
 void Correspond(const CorrespondenceOptions& options,
                 const FeatureSet& reference, const FeatureSet& query,
                 const std::vector<int>& rows, const std::vector<int>& columns,
@@ -70,7 +70,7 @@ void Correspond(const CorrespondenceOptions& options,
   const Eigen::MatrixXf references = Select(reference.descriptors, rows);
   const Eigen::MatrixXf queries = Select(query.descriptors, columns);
   const Eigen::VectorXf squared_norms = references.colwise().squaredNorm();
-  // |r - q|^2 without |q|^2, which is added to those that matter.
+  // The dot products r . q of |r - q|^2, all at once.
   const Eigen::MatrixXf products = references.transpose() * queries;
   std::vector<Neighbour> neighbours;
   for (Eigen::Index k = 0; k < products.cols(); ++k) {

@@ -15,15 +15,15 @@ struct CorrespondenceOptions {
   // Nearest neighbours in descriptor space that each query feature proposes.
   // Larger: more true correspondences among more false ones.
   int num_neighbours = 5;
-  // Whether a query feature whose nearest neighbour is not clearly nearer than
-  // the next is dropped ([Lowe2004], Sec. 7.1).
+  // Whether to drop query features whose nearest neighbour is not clearly
+  // nearer than the next ([Lowe2004], Sec. 7.1).
   bool use_ratio_test = false;
   // Largest ratio of the two distances; Table I.
   double max_ratio = 0.75;
-  // Whether features correspond to those of their own kind only
+  // Whether features correspond only to features of the same kind
   // ([Millane2019], Sec. IV-C).
   bool same_kind_only = true;
-  // Features whose clearance differs by more do not correspond [m].
+  // Features whose clearance differs by more than this do not correspond [m].
   double max_clearance_difference_meters = 0.2;
 };
 [[nodiscard]] std::string Validate(const CorrespondenceOptions& options);
@@ -35,9 +35,9 @@ struct Correspondence {
   float descriptor_distance;
 };
 
-// Putative correspondences between features, exhaustively: kind by kind (all
-// together where kinds may mix), in the order of the query features, nearest
-// first.
+// Finds putative correspondences between features by exhaustive search: kind by
+// kind (all together where kinds may mix), in the order of the query features,
+// nearest first.
 [[nodiscard]] std::vector<Correspondence> FindCorrespondences(
     const CorrespondenceOptions& options, const FeatureSet& reference,
     const FeatureSet& query);

@@ -17,8 +17,8 @@ namespace cartographer_sdf {
 
 namespace {
 
-// How much a query feature says whose neighbours lie in these slots of so many:
-// the inverse document frequency, as far as the nearer half of them shows it.
+// Estimates the inverse document frequency of a query feature from the slots of
+// the nearer half of its neighbours, of `num_slots` in total.
 float Distinctiveness(std::vector<int> slots, const size_t num_slots) {
   std::sort(slots.begin(), slots.end());
   slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
@@ -26,8 +26,8 @@ float Distinctiveness(std::vector<int> slots, const size_t num_slots) {
                     static_cast<float>(slots.size()));
 }
 
-// Weight of the pose on which most of the correspondences with one submap
-// agree; none where no two agree.
+// Returns the weight of the pose for which the correspondences with one submap
+// vote most; nullopt if no two agree.
 std::optional<double> HeaviestVote(
     const PoseVotingOptions& options, const Eigen::Vector2d& centroid,
     std::vector<WeightedCorrespondence> correspondences) {
@@ -57,7 +57,7 @@ std::string Validate(const RetrievalOptions& options) {
   if (!(options.min_score >= 0.)) return "min_score must not be negative";
   if (options.min_num_candidates < 1 ||
       options.max_num_candidates < options.min_num_candidates) {
-    return "min_num_candidates must be positive and max_num_candidates no less";
+    return "min_num_candidates must be positive and at most max_num_candidates";
   }
   return "";
 }
@@ -222,7 +222,7 @@ void PlaceIndex::VisitDistances(const Segment& segment, const double clearance,
 std::vector<PlaceIndex::Neighbour> PlaceIndex::FindNeighbours(
     const Feature& feature, const Eigen::Ref<const Eigen::VectorXf>& query,
     const std::vector<char>& is_excluded) const {
-  // One more than votes: the last is what the others are compared with.
+  // One more than vote: the others are compared with the last.
   const size_t count = static_cast<size_t>(options_.num_neighbours) + 1;
   const auto nearer = [this](const Neighbour& a, const Neighbour& b) {
     return std::tie(a.squared_distance, slots_[a.slot].id, a.feature) <
@@ -310,13 +310,13 @@ std::vector<RetrievalCandidate> PlaceIndex::Rank(
     const std::optional<double> weight = HeaviestVote(
         options_.votes, centroid, std::move(correspondences[slot]));
     if (!weight) continue;
-    // By chance, the more features both have the more agree.
+    // The more features both have, the more agree by chance.
     const double num_features =
         std::sqrt(static_cast<double>(slots_[slot].features.size()) *
                   static_cast<double>(features.features.size()));
     candidates.push_back({id, std::sqrt(*weight / num_features)});
   }
-  // Equal ones in the order of their ids.
+  // Ties stay in the order of ids.
   std::stable_sort(
       candidates.begin(), candidates.end(),
       [](const RetrievalCandidate& a, const RetrievalCandidate& b) {

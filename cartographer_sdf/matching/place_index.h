@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Which of many remembered submaps look like a new one, without comparing it
-// with each: every feature of the query finds its
-// nearest neighbours among the features of all submaps at once, and the pairs
-// of those that fall into one submap vote for poses. A neighbour counts by how
-// much nearer it is than the last one found ([McCann2012]), and a feature that
-// is found in many submaps counts less: what is common everywhere says little.
-// Heuristic; verification decides.
+// Finds the remembered submaps that look like a new one without comparing it
+// with each: every feature of the query finds its nearest neighbours among the
+// features of all submaps at once, and pairs of neighbours in the same submap
+// vote for poses. A neighbour's weight is how much nearer it is than the last
+// one found ([McCann2012]); features found in many submaps are less distinctive
+// and weigh less. Heuristic; verification decides.
 
 #ifndef CARTOGRAPHER_SDF_MATCHING_PLACE_INDEX_H_
 #define CARTOGRAPHER_SDF_MATCHING_PLACE_INDEX_H_
@@ -27,15 +26,16 @@
 namespace cartographer_sdf {
 
 struct RetrievalOptions {
-  // Nearest features of the whole index that each query feature finds. Larger:
-  // more recall, more time.
+  // Nearest neighbours of each query feature among all features of the index.
+  // Larger: more recall, more time.
   int num_neighbours = 100;
-  // Features whose clearance differs by more are no neighbours [m].
+  // Features whose clearance differs by more than this are not neighbours [m].
   double max_clearance_difference_meters = 0.2;
   PoseVotingOptions votes = {250, 0.25, 0.35, 1., 0.75, 0.2};
-  // Candidates with a lower score are left out, ...
+  // Candidates with a lower score are dropped, ...
   double min_score = 0.06;
-  // ... but never the best so many. There are never more than the most.
+  // ... except the best `min_num_candidates`. Never more than
+  // `max_num_candidates` are returned.
   int min_num_candidates = 10;
   int max_num_candidates = 200;
 };
@@ -43,34 +43,37 @@ struct RetrievalOptions {
 
 struct RetrievalCandidate {
   SubmapId id;
-  // Root of the weight of the votes for the best pose, over that of the
-  // geometric mean of both numbers of features: comparable between queries, and
-  // nearly so between maps.
+  // Square root of the weight of the best pose over the geometric mean of both
+  // numbers of features: comparable between queries, and nearly so between
+  // maps.
   double score;
 };
 
-// Thread-compatible: queries may run at once, Add and Remove alone. Results do
-// not depend on the order in which submaps were added, or on what was removed.
+// Thread-compatible: queries may run concurrently, Add and Remove need
+// exclusive access. Results do not depend on the order in which submaps were
+// added, or on removed submaps.
 class PlaceIndex {
  public:
-  // Whether a submap is excluded: its features are not even neighbours.
+  // Returns whether a submap is excluded: its features are not even neighbours.
   using Predicate = std::function<bool(const SubmapId&)>;
 
   explicit PlaceIndex(const RetrievalOptions& options);
 
-  // The id is new, and descriptors have the length of those before. Amortised
-  // over many: n log n for n features in all.
+  // The id must be new, and descriptors must have the same length as before.
+  // Amortised cost: n log n for n features in total.
   void Add(const SubmapId& id, const FeatureSet& features);
-  // Whether it was there. Linear in the number of features in all.
+  // Returns whether the submap was present. Linear in the total number of
+  // features.
   bool Remove(const SubmapId& id);
   [[nodiscard]] bool Contains(const SubmapId& id) const;
   [[nodiscard]] size_t size() const { return slots_by_id_.size(); }
 
-  // Best first. Time grows with the number of features in all times those of
-  // the query, but a step is as cheap as can be (times: retrieval_benchmark).
+  // Returns candidates, best first. Time grows with the total number of
+  // features times those of the query, with a small constant (times:
+  // retrieval_benchmark).
   [[nodiscard]] std::vector<RetrievalCandidate> Query(
       const FeatureSet& features, const Predicate& is_excluded = {}) const;
-  // The best so many, whatever their scores.
+  // Returns the best `num_candidates`, whatever their scores.
   [[nodiscard]] std::vector<RetrievalCandidate> QueryBest(
       const FeatureSet& features, int num_candidates,
       const Predicate& is_excluded = {}) const;
@@ -84,10 +87,10 @@ class PlaceIndex {
     SubmapId id;
     std::vector<StoredFeature> features;
   };
-  // Features of one kind, ordered by clearance, those of a few submaps.
+  // Features of one kind from a few submaps, ordered by clearance.
   struct Segment {
     std::vector<float> clearances;
-    Eigen::ArrayXXf descriptors;  // a row for each
+    Eigen::ArrayXXf descriptors;  // one row per feature
     std::vector<int> slots;
     std::vector<int> features;  // indices in the slot
   };
@@ -110,10 +113,11 @@ class PlaceIndex {
   void VisitDistances(const Segment& segment, double clearance,
                       const Eigen::Ref<const Eigen::VectorXf>& query,
                       const Visitor& visit) const;
-  // All submaps with a vote, best first.
+  // Returns all submaps with a vote, best first.
   [[nodiscard]] std::vector<RetrievalCandidate> Rank(
       const FeatureSet& features, const Predicate& is_excluded) const;
-  // Of the features of a query with those of the submap in each slot.
+  // Returns the correspondences of the query's features with those of the
+  // submap in each slot.
   [[nodiscard]] std::vector<std::vector<WeightedCorrespondence>> Correspond(
       const FeatureSet& query, const Eigen::Vector2d& centroid,
       const std::vector<char>& is_excluded) const;

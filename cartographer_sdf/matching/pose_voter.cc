@@ -48,7 +48,7 @@ class PoseRaster {
   }
 
  private:
-  // 22 bits; everything absurdly far away shares a bin.
+  // 22 bits; all coordinates out of range share the outermost bins.
   [[nodiscard]] uint64_t Along(const float coordinate) const {
     constexpr float kOffset = 1 << 20;
     return static_cast<uint64_t>(std::clamp(
@@ -59,7 +59,7 @@ class PoseRaster {
   const int num_rotations_;
 };
 
-// The vote of a pair of correspondences; none where they do not agree.
+// Computes the vote of a pair of correspondences; nullopt if they do not agree.
 class PairVoter {
  public:
   explicit PairVoter(const PoseVotingOptions& options)
@@ -113,7 +113,7 @@ std::vector<Vote> CollectVotes(
   std::vector<Vote> votes;
   const size_t n = correspondences.size();
   for (size_t a = 0; a < n; ++a) {
-    // Those that follow in rotation, around the circle.
+    // Correspondences that follow in rotation, around the circle.
     for (size_t step = 1; step < n; ++step) {
       const bool wraps = a + step >= n;
       const WeightedCorrespondence& second =
@@ -138,7 +138,7 @@ struct Cluster {
 };
 
 std::vector<Cluster> ClusterVotes(std::vector<Vote> votes) {
-  // Sums round the same whatever the order of the votes was.
+  // Sorted, so that sums round the same whatever the order of the votes.
   std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
     return std::tie(a.bin, a.x, a.y, a.rotation, a.weight) <
            std::tie(b.bin, b.x, b.y, b.rotation, b.weight);

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Poses of a query submap in a reference submap on which putative
+// Finds poses of a query submap in a reference submap on which putative
 // correspondences agree. Every pair of correspondences that agrees in length
-// and orientation fixes a pose and votes for it; the fullest bins of a raster
-// of poses come out, each as the mean of its votes. Deterministic, and unlike
-// RANSAC it returns several answers: a place that looks alike twice yields both
-// poses, and verification, which sees walls and free space, decides.
+// and orientation determines a pose and votes for it; the heaviest bins of a
+// raster of poses become hypotheses, each the mean of its votes. Deterministic,
+// and unlike RANSAC it returns several hypotheses: two places that look alike
+// yield both poses, and verification, which uses walls and free space, decides.
 //
 // Two callers: matching a pair of submaps, which votes with all correspondences
 // of the pair (ProposePoses), and the index of all places, which votes with the
@@ -26,7 +26,7 @@
 namespace cartographer_sdf {
 
 struct PoseVotingOptions {
-  // Of the correspondences, the best so many are paired. Time grows with the
+  // Only this many correspondences, the best, are paired. Time grows with the
   // square.
   int max_num_correspondences = 400;
   // Two correspondences agree when the distances between their keypoints differ
@@ -34,7 +34,7 @@ struct PoseVotingOptions {
   double max_length_difference_meters = 0.2;
   // ... and the rotations that their orientations imply by at most this [rad].
   double max_orientation_difference = 0.44;
-  // Keypoints nearer than this to each other fix no rotation [m].
+  // Keypoints nearer than this to each other determine no rotation [m].
   double min_baseline_meters = 1.5;
   // Pitch of the raster of poses, for the position of the centroid of the
   // query's keypoints [m], and ...
@@ -47,11 +47,11 @@ struct PoseVotingOptions {
 struct WeightedCorrespondence {
   Eigen::Vector2f p_reference;  // reference frame [m]
   Eigen::Vector2f p_centroid;   // query's axes, from the keypoints' centroid
-  float rotation;               // that the orientations imply, (-pi, pi]
+  float rotation;               // implied by the orientations, (-pi, pi]
   float weight;                 // positive
 };
 
-// What the query's keypoints are measured from while voting.
+// Returns the point from which voting measures the query's keypoints.
 [[nodiscard]] Eigen::Vector2d KeypointCentroid(const FeatureSet& features);
 
 struct VotedPose {
@@ -60,23 +60,24 @@ struct VotedPose {
   double weight;
 };
 
-// Heaviest first, at most `max_num_poses`. `correspondences` come best first;
-// `centroid` is KeypointCentroid of the query. Fewer than two yield none.
+// Returns at most `max_num_poses` poses, heaviest first. `correspondences` come
+// best first; `centroid` is KeypointCentroid of the query. Fewer than two
+// correspondences yield no pose.
 [[nodiscard]] std::vector<VotedPose> VotePoses(
     const PoseVotingOptions& options, int max_num_poses,
     const Eigen::Vector2d& centroid,
     std::vector<WeightedCorrespondence> correspondences);
 
 struct HypothesisOptions {
-  // Most poses that come out. Larger: more recall, more time.
+  // Largest number of poses returned. Larger: more recall, more time.
   int max_num_hypotheses = 80;
   PoseVotingOptions votes;
 };
 [[nodiscard]] std::string Validate(const HypothesisOptions& options);
 
-// The poses for which the correspondences of one pair of submaps vote; those of
-// the least descriptor distance take part, with equal weights. Most votes
-// first.
+// Returns the poses for which the correspondences of one pair of submaps vote,
+// most votes first. Those with the least descriptor distance vote, with equal
+// weights.
 [[nodiscard]] std::vector<Rigid2> ProposePoses(
     const HypothesisOptions& options, const FeatureSet& reference,
     const FeatureSet& query, std::vector<Correspondence> correspondences);

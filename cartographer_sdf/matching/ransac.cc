@@ -42,7 +42,8 @@ int CountAgreeing(const PointPairs& pairs, const Rigid2& T_reference_query,
   return count;
 }
 
-// Those that agree, each keypoint used once: earlier correspondences first.
+// Selects the correspondences that agree, each keypoint used once: earlier
+// correspondences first.
 std::vector<Correspondence> SelectInliers(
     const RansacOptions& options, const FeatureSet& reference,
     const FeatureSet& query, const std::vector<Correspondence>& correspondences,
@@ -68,7 +69,8 @@ std::vector<Correspondence> SelectInliers(
   return inliers;
 }
 
-// All pairs (a, b) with a < b in order, or as many random ones as allowed.
+// All pairs (a, b) with a < b in order, or `max_num_pairs` random ones if there
+// are more.
 class PairSequence {
  public:
   PairSequence(const int num_items, const int max_num_pairs,
@@ -79,7 +81,7 @@ class PairSequence {
         remaining_(max_num_pairs),
         generator_(seed) {}
 
-  // False when there are no more.
+  // Returns false when no pair is left.
   bool Next(std::pair<int, int>* const pair) {
     if (exhaustive_) {
       if (++pair_.second >= num_items_) {

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The paper's alignment of two submaps ([Millane2019], Sec. IV-D): the rigid
-// motion on which most correspondences agree ([Fischler1981]). Where there are
-// no more pairs of correspondences than iterations, every pair is tried;
-// otherwise pairs are drawn by a generator seeded by the caller, so that the
-// result depends on nothing else.
+// motion on which most correspondences agree ([Fischler1981]). If there are no
+// more pairs of correspondences than iterations, every pair is tried; otherwise
+// a generator seeded by the caller draws pairs, so that results are
+// reproducible.
 
 #ifndef CARTOGRAPHER_SDF_MATCHING_RANSAC_H_
 #define CARTOGRAPHER_SDF_MATCHING_RANSAC_H_
@@ -22,9 +22,9 @@ namespace cartographer_sdf {
 
 struct RansacOptions {
   int max_num_iterations = 2000;
-  // A correspondence agrees when its points come this near [m].
+  // A correspondence is an inlier if its points come within this distance [m].
   double inlier_distance_meters = 0.3;
-  // Two correspondences nearer than this fix no rotation [m].
+  // Two correspondences nearer than this determine no rotation [m].
   double min_baseline_meters = 1.;
 };
 [[nodiscard]] std::string Validate(const RansacOptions& options);
@@ -34,8 +34,9 @@ struct Alignment {
   std::vector<Correspondence> inliers;
 };
 
-// None where no two correspondences agree. Of equal ones the first found wins.
-// Every reference keypoint and every query keypoint counts once.
+// Returns nullopt if no two correspondences agree. Of equally good motions, the
+// first found wins. Each reference and each query keypoint occurs at most once
+// among the inliers.
 [[nodiscard]] std::optional<Alignment> AlignByRansac(
     const RansacOptions& options, const FeatureSet& reference,
     const FeatureSet& query, const std::vector<Correspondence>& correspondences,

@@ -22,14 +22,14 @@ struct PlaceOptions {
 };
 [[nodiscard]] std::string Validate(const PlaceOptions& options);
 
-// A submap as it is remembered, in its own frame.
+// The description by which a submap is remembered, in the submap frame.
 struct Place {
   SubmapId id;
   SurfaceModel surface;
   FeatureSet features;
 };
 
-// None where the grid has no wall, or nothing observed.
+// Returns nullopt if the grid has no wall or no observed cell.
 [[nodiscard]] std::optional<Place> DescribePlace(const PlaceOptions& options,
                                                  const SubmapId& id,
                                                  const OccupancyGrid& grid);

@@ -27,8 +27,8 @@ int16_t ToMillimetres(const float meters) {
       std::lround(std::clamp(1000.f * meters, -kLimit, kLimit)));
 }
 
-// Fisher-Yates with a fixed seed and draws of our own, as the standard's
-// shuffle differs between libraries.
+// Fisher-Yates with a fixed seed and our own draws, as std::shuffle differs
+// between libraries.
 template <typename T>
 void Mix(std::vector<T>* const items) {
   std::mt19937 generator(42);
@@ -38,7 +38,7 @@ void Mix(std::vector<T>* const items) {
   }
 }
 
-// The walls as weighted points, and the certainty of the free cells.
+// Adds the walls as weighted points, and the certainty of the free cells.
 void AddCertainty(const FieldOptions& options, const OccupancyGrid& grid,
                   SurfaceModel* const model) {
   const Eigen::Array2i margin = (model->geometry.size - grid.geometry.size) / 2;

@@ -13,21 +13,22 @@
 
 namespace cartographer_sdf {
 
-// Where local SLAM puts a submap, in its trajectory's local frame.
+// The pose of a submap by local SLAM, in its trajectory's local frame.
 struct OdometryPose {
   Rigid2 T_local_submap;
   double distance_driven = 0.;  // up to the submap, along the trajectory [m]
 };
 
-// The places of one map and their poses by local SLAM; every place has one. No
-// pose of the optimised map takes part. Neither map is owned.
+// The places of one map and their poses by local SLAM; every place has one.
+// Poses of the optimised map are not used. Neither map is owned.
 struct TrajectoryPlaces {
   const std::map<SubmapId, Place>* places;
   const std::map<SubmapId, OdometryPose>* odometry;
 };
 
-// Submaps of one trajectory whose indices differ by less share scans, and local
-// SLAM has related them already.
+// Returns whether two submaps share scans: those of one trajectory do if their
+// indices differ by less than `min_index_gap`, and local SLAM has already
+// related them.
 [[nodiscard]] inline bool ShareScans(const SubmapId& a, const SubmapId& b,
                                      const int min_index_gap) {
   return a.trajectory == b.trajectory &&

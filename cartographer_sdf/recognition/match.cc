@@ -35,7 +35,7 @@ InlierPairs CollectInliers(const double max_distance, const Place& reference,
   return inliers;
 }
 
-// The same for a pair whatever else is matched, and in which order.
+// Depends on the pair alone, not on other matches or their order.
 uint64_t PairSeed(const int seed, const SubmapId& reference,
                   const SubmapId& query) {
   uint64_t hash = static_cast<uint64_t>(seed);
@@ -114,7 +114,7 @@ MatchOptions PaperMatchOptions() {
   options.method = Method::kPaper;
   options.correspondence.num_neighbours = 1;
   options.correspondence.use_ratio_test = true;
-  // The paper tells distances apart by the descriptor's last entry alone.
+  // The paper compares distances only by the descriptor's last entry.
   options.correspondence.max_clearance_difference_meters = 1e6;
   return options;
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Where does one place lie in another? Pairwise, without any pose prior.
+// Finds the pose of one place in another, pairwise, without any pose prior.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_MATCH_H_
@@ -37,7 +37,7 @@ struct MatchOptions {
   // Correspondences nearer than this under the final pose are reported as
   // inliers [m].
   double inlier_distance_meters = 0.3;
-  // Only method kPaper.
+  // Used by method kPaper only.
   RansacOptions ransac;
   int min_num_inliers = 12;
   int seed = 42;
@@ -48,12 +48,12 @@ struct MatchOptions {
 [[nodiscard]] PlaceOptions PaperPlaceOptions();
 [[nodiscard]] MatchOptions PaperMatchOptions();
 
-// What the neighbouring pairs of submaps show where a match predicts them; see
-// neighbourhood.h. Lengths of wall are weighted by certainty.
+// Evidence from the neighbouring pairs of submaps, at the poses that a match
+// predicts; see neighbourhood.h. Wall lengths are weighted by certainty.
 struct NeighbourhoodEvidence {
   int num_pairs = 0;
-  double wall_length = 0.;           // within what the other has observed [m]
-  double contradicting_length = 0.;  // of it, in the other's free space [m]
+  double wall_length = 0.;           // within the other's observed area [m]
+  double contradicting_length = 0.;  // part in the other's free space [m]
 };
 
 // A pose of a pair of submaps, accepted or not.
@@ -61,28 +61,28 @@ struct Match {
   PairPose pair;
   Verdict verdict = Verdict::kUnlikely;
   PairEvidence evidence;
-  // Score of the pair alone; pair.score differs from it where the neighbourhood
-  // was verified too.
+  // Score of the pair alone; pair.score differs if the neighbourhood was
+  // verified too.
   double pair_score = 0.;
   double margin = 0.;          // as VerifiedPose::margin
   std::vector<Rigid2> rivals;  // as VerifiedPose::rivals
   // Keypoints (reference, query) that agree with the pose, each in its own
   // submap frame.
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> inliers;
-  // Absent where the neighbourhood was not verified.
+  // Absent if the neighbourhood was not verified.
   std::optional<NeighbourhoodEvidence> neighbourhood;
 };
 
 // Finds the poses in which a place resembles itself, by matching it with
-// itself, so that rivals are noticed when it is matched with others.
+// itself, so that rivals are detected when it is matched with others.
 void FindSelfSimilarities(const MatchOptions& options, Place* place);
 
-// None where there is no pose worth reporting.
+// Returns nullopt if there is no pose worth reporting.
 [[nodiscard]] std::optional<Match> MatchPlaces(const MatchOptions& options,
                                                const Place& reference,
                                                const Place& query);
 
-// The match that a verified pose of method kSdf amounts to.
+// Makes a match of a verified pose of method kSdf.
 [[nodiscard]] Match MakeMatch(const MatchOptions& options,
                               const Place& reference, const Place& query,
                               VerifiedPose verified);

@@ -25,13 +25,13 @@ constexpr std::array<NeighbourhoodTerm, kNumNeighbourhoodTerms> kTerms = {
     {{"pair_score", &NeighbourhoodWeights::pair_score},
      {"log_contradiction", &NeighbourhoodWeights::log_contradiction}}};
 
-// The submap itself and the neighbours that exist.
+// Returns the submap itself and its existing neighbours.
 std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
                                  const TrajectoryPlaces& map,
                                  const SubmapId& id) {
   std::vector<SubmapId> neighbours;
   for (int step = -options.num_steps; step <= options.num_steps; ++step) {
-    // Any file may say any index.
+    // Files may contain any index.
     const int64_t index =
         static_cast<int64_t>(id.index) + step * options.index_step;
     if (index < 0 || index > std::numeric_limits<int>::max()) continue;
@@ -47,7 +47,8 @@ Rigid2 RelativePose(const TrajectoryPlaces& map, const SubmapId& a,
          map.odometry->at(b).T_local_submap;
 }
 
-// Adds the wall of `points` in metres: each point stands for those not sampled.
+// Adds the wall of `points` in metres: each sampled point also stands for those
+// not sampled.
 void Add(const AgreementOptions& options, const SurfaceModel& model,
          const SurfaceModel& points, const Rigid2& T_model_points,
          NeighbourhoodEvidence* const evidence) {
@@ -61,8 +62,9 @@ void Add(const AgreementOptions& options, const SurfaceModel& model,
   evidence->contradicting_length += stands_for * agreement.contradictions;
 }
 
-// Registers a pair of neighbours from its predicted pose and adds what it
-// shows. None where too little is observed by both, before or after.
+// Registers a pair of neighbours from its predicted pose and adds its evidence.
+// Returns nullopt if registration fails, or the common observed area is too
+// small before or after it.
 std::optional<Rigid2> AddPair(const NeighbourhoodOptions& options,
                               const VerificationOptions& verification,
                               const SurfaceModel& reference,

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Neighbourhood evidence: what the neighbours of two matched submaps show.
-// Look-alike places (equal rooms, repeating corridors) pass every test of two
-// submaps alone, but their surroundings seldom are alike too. Local SLAM knows
-// the poses of a submap's neighbours, so a match predicts a pose for every pair
-// of a neighbour of the reference and a neighbour of the query. Registered from
-// there, their walls and free space agree or contradict each other.
+// Evidence from the neighbours of two matched submaps. Perceptual aliasing
+// (equal rooms, repeating corridors) passes every test of two submaps alone,
+// but the surroundings seldom look alike too. Local SLAM knows the poses of a
+// submap's neighbours, so a match predicts a pose for every pair of a neighbour
+// of the reference and a neighbour of the query. Once registered from that
+// pose, their walls and free space agree or contradict each other.
 //
 // A prediction is also a hypothesis: it finds poses that a pair's own features
-// did not propose. No pose of the optimised map takes part, and a match is
-// never held against odometry itself, as local SLAM may have slipped in
+// did not propose. Poses of the optimised map are not used, and a match is
+// never compared with odometry itself, as local SLAM may have slipped in
 // between.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_H_
@@ -28,9 +28,10 @@
 
 namespace cartographer_sdf {
 
-// The score of a match in its neighbourhood, log-odds of being right, is linear
-// in these, up to NeighbourhoodOptions::max_gain. Learned by logistic
-// regression; see scripts/learn_score.py.
+// The score of a match in its neighbourhood, log-odds of being right, is a
+// linear combination with these weights, limited by
+// NeighbourhoodOptions::max_gain. Learned by logistic regression; see
+// scripts/learn_score.py.
 struct NeighbourhoodWeights {
   double pair_score = 0.515;
   double log_contradiction = -5.57;
@@ -39,34 +40,34 @@ struct NeighbourhoodWeights {
 [[nodiscard]] std::string Validate(const NeighbourhoodWeights& weights);
 
 struct NeighbourhoodOptions {
-  // Neighbours are the submaps of the same trajectory at so many steps of so
-  // many indices, either way. Two consecutive submaps of Cartographer share
-  // half of their scans, every other one shares none.
+  // Neighbours are the submaps of the same trajectory up to `num_steps` steps
+  // of `index_step` indices away, in either direction. Consecutive submaps of
+  // Cartographer share half of their scans, those two indices apart share none.
   int num_steps = 2;
   int index_step = 2;
-  // Neighbouring pairs that have observed less in common are skipped [m^2].
+  // Neighbouring pairs with a smaller common observed area are skipped [m^2].
   double min_overlap_area = 15.;
-  // Wall points of each neighbour.
+  // Largest number of wall points used of each neighbour.
   int num_points = 600;
-  // Prior: a match is scored as if its neighbourhood had shown this much wall
-  // more [m] ...
+  // Prior: a match is scored as if its neighbourhood had shown this much more
+  // wall [m] ...
   double prior_wall_length_meters = 50.;
   // ... of which this fraction contradicts.
   double prior_contradiction_ratio = 0.05;
-  // The neighbourhood of a match with a lower score of its own is not measured.
+  // The neighbourhood of a match with a lower pair score is not measured.
   double min_pair_score = -5.;
-  // A match of this score in its neighbourhood proposes poses to the
-  // neighbouring pairs, log-odds.
+  // A match with at least this score in its neighbourhood proposes poses to the
+  // neighbouring pairs; log-odds.
   double min_proposing_score = 0.;
   NeighbourhoodWeights weights;
-  // The neighbourhood raises the score of a pair by no more than this,
-  // log-odds: it does not make up for walls that disagree.
+  // The neighbourhood raises the score of a pair by at most this, log-odds: it
+  // cannot make up for walls that disagree.
   double max_gain = 3.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodOptions& options);
 
-// Logarithm of the ratio of contradicting wall over that of the prior; zero
-// where nothing was observed, negative where neighbours agree.
+// Returns the logarithm of the ratio of contradicting wall over that of the
+// prior; zero if nothing was observed, negative if neighbours agree.
 [[nodiscard]] double LogContradiction(const NeighbourhoodOptions& options,
                                       const NeighbourhoodEvidence& evidence);
 
@@ -88,10 +89,10 @@ struct Neighbourhood {
   std::vector<PairPose> proposals;
 };
 
-// `pair` is where the reference and query of two maps, or of one, are matched.
-// Pairs of neighbours that share scans (see ShareScans; no two do where
-// `min_index_gap` is empty, between different maps) are skipped. Takes as long
-// as verifying some ten poses.
+// Measures the neighbourhood of the match `pair`, between two maps or within
+// one. Skips pairs of neighbours that share scans (see ShareScans; between
+// different maps, `min_index_gap` is empty and none do). Takes as long as
+// verifying about ten poses.
 [[nodiscard]] Neighbourhood MeasureNeighbourhood(
     const NeighbourhoodOptions& options,
     const VerificationOptions& verification, const TrajectoryPlaces& references,

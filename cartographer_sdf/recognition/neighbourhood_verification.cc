@@ -16,7 +16,7 @@ using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
 
 // Proposals of one pair that are nearer than this count as one.
 constexpr PoseTolerance kSameProposal{0.5, 0.15};
-// The best so many proposals of a pair are verified.
+// At most this many proposals of a pair, the best, are verified.
 constexpr size_t kMaxNumProposals = 4;
 
 // One pose of a pair, verified with its neighbourhood.
@@ -26,11 +26,11 @@ struct Opinion {
   double score;
 };
 
-// What the second pass has to decide of one pair.
+// A pair that the second pass decides.
 struct Task {
   IdPair ids;
   const Match* match;  // null where the pair has none
-  // Poses that neighbours propose, with the scores of the matches that do.
+  // Poses that neighbours propose, with the scores of the proposing matches.
   std::vector<PairPose> proposals;
 };
 
@@ -52,7 +52,7 @@ class NeighbourhoodVerifier {
     CHECK(match_options.method == Method::kSdf);
   }
 
-  // Fills in score and verdict of a match as it stands; returns the poses that
+  // Sets score and verdict of a match at its given pose; returns the poses that
   // it proposes to other pairs, with its score.
   std::vector<PairPose> VerifyMatch(Match* const match) const {
     Neighbourhood neighbourhood;
@@ -72,7 +72,8 @@ class NeighbourhoodVerifier {
     return std::move(neighbourhood.proposals);
   }
 
-  // The pairs that have more than one pose to choose from, by their ids.
+  // Returns the pairs that have proposals or rivals to choose from, by their
+  // ids.
   [[nodiscard]] std::vector<Task> CollectTasks(
       const std::vector<Match>& matches,
       const std::vector<std::vector<PairPose>>& proposals) const {
@@ -105,8 +106,8 @@ class NeighbourhoodVerifier {
     return result;
   }
 
-  // The most likely of the match's own pose, its rivals and the proposals; none
-  // where none of them can be registered.
+  // Returns the most likely of the match's own pose, its rivals and the
+  // proposals; nullopt if none of them can be registered.
   [[nodiscard]] std::optional<Match> Decide(const Task& task) const {
     const Place& reference = references_.places->at(task.ids.first);
     const Place& query = queries_.places->at(task.ids.second);
@@ -155,7 +156,8 @@ class NeighbourhoodVerifier {
                            match->evidence, match->pair.score, match->margin);
   }
 
-  // Those that are distinct from each other and from the match's own pose.
+  // Keeps the best proposals that are distinct from each other and from the
+  // match's own pose.
   void KeepBestProposals(Task* const task) const {
     std::stable_sort(
         task->proposals.begin(), task->proposals.end(),
@@ -199,7 +201,7 @@ class NeighbourhoodVerifier {
   const std::optional<int> min_index_gap_;
 };
 
-// The decided matches in place of those of the same pairs.
+// Replaces matches by the decided ones of the same pairs.
 std::vector<Match> Replace(std::vector<Match> matches,
                            std::vector<std::optional<Match>> decided) {
   std::map<IdPair, Match> all;

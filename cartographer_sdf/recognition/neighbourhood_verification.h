@@ -20,17 +20,16 @@ namespace cartographer_sdf {
 // `matches` are of method kSdf, in the order of their ids: of pairs within one
 // map, the lower id first (with `min_index_gap`), or between two maps
 // (without). Returns for each pair the pose that its neighbourhood makes most
-// likely, with score and verdict as the neighbourhood has them; among them
-// pairs that had no pose before. In the order of the ids.
+// likely, with score and verdict based on the neighbourhood, including pairs
+// that had no pose before. In the order of the ids.
 [[nodiscard]] std::vector<Match> VerifyNeighbourhoods(
     const NeighbourhoodOptions& options, const MatchOptions& match_options,
     const TrajectoryPlaces& references, const TrajectoryPlaces& queries,
     std::optional<int> min_index_gap, std::vector<Match> matches,
     const Executor& executor, const ProgressCallback& on_progress = {});
 
-// The same for one match as it stands: sets its score, verdict and
-// neighbourhood evidence. Its rivals, and what it proposes to other pairs, are
-// not looked at.
+// Does the same for one match at its given pose: sets its score, verdict and
+// neighbourhood evidence. Ignores its rivals and its proposals to other pairs.
 void VerifyNeighbourhood(const NeighbourhoodOptions& options,
                          const MatchOptions& match_options,
                          const TrajectoryPlaces& references,

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The memory of places of a map that grows: have I been here, and where is it?
-// The one class of the core with a state worth the name.
+// Remembers the places of a growing map and finds a query among them.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_PLACE_RECOGNIZER_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_PLACE_RECOGNIZER_H_
@@ -16,16 +15,17 @@
 
 namespace cartographer_sdf {
 
-// Thread-compatible: const methods may run at once, the others alone. Results
-// do not depend on the order of remembering, or on what was forgotten.
+// Thread-compatible: const methods may run concurrently, the others need
+// exclusive access. Results do not depend on the order in which places were
+// remembered, or on forgotten ones.
 class PlaceRecognizer {
  public:
   PlaceRecognizer(const RetrievalOptions& retrieval, const MatchOptions& match);
 
-  // The id is new. For method kSdf the place knows its self-similar poses
-  // (FindSelfSimilarities), if rivals are to be noticed.
+  // The id must be new. For method kSdf, call FindSelfSimilarities on the place
+  // before, so that rivals are detected.
   void Remember(Place place);
-  // Whether it was known.
+  // Returns whether the place was known.
   bool Forget(const SubmapId& id);
   [[nodiscard]] const std::map<SubmapId, Place>& places() const {
     return places_;
@@ -38,11 +38,12 @@ class PlaceRecognizer {
     size_t num_candidates = 0;
   };
   // Matches the query with the candidates of the index; skips ids for which
-  // `is_excluded` returns true. The query need not be remembered; where it is,
-  // it matches itself unless excluded.
+  // `is_excluded` returns true. The query need not be remembered; if it is, it
+  // matches itself unless excluded.
   [[nodiscard]] Recognition Recognize(
       const Place& query, const PlaceIndex::Predicate& is_excluded = {}) const;
-  // The same with the best so many candidates, whatever their retrieval scores.
+  // Does the same with the best `num_candidates` candidates, whatever their
+  // retrieval scores.
   [[nodiscard]] Recognition RecognizeAmongBest(
       const Place& query, int num_candidates,
       const PlaceIndex::Predicate& is_excluded = {}) const;

@@ -18,7 +18,7 @@ namespace {
 
 using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
 
-// The candidates of every query among the references.
+// Returns the candidates of every query among the references.
 std::vector<IdPair> RetrievePairs(
     const RetrievalOptions& options,
     const std::map<SubmapId, Place>& references,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// All matches within a map or between two maps: which pairs of submaps are
-// compared, how each is matched, and the verification of their neighbourhoods.
+// Finds all matches within a map or between two maps: selects pairs of submaps,
+// matches each, and verifies their neighbourhoods.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_RECOGNIZE_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_RECOGNIZE_H_
@@ -22,34 +22,35 @@ namespace cartographer_sdf {
 
 struct RecognitionOptions {
   MatchOptions match;
-  // Submaps of one trajectory are matched from this difference of their indices
-  // on; nearer ones share scans.
+  // Submaps of one trajectory are matched if their indices differ by at least
+  // this; nearer ones share scans.
   int min_index_gap = 3;
-  // Whether only pairs that an index of all features proposes are matched; else
-  // all are, and time grows with the square of the number of submaps.
+  // Whether to match only pairs that an index of all features proposes;
+  // otherwise all are matched, and time grows with the square of the number of
+  // submaps.
   bool use_retrieval = false;
   RetrievalOptions retrieval;
-  // Whether matches are verified together with the neighbours of both submaps.
+  // Whether to verify matches together with the neighbours of both submaps.
   // Localization verifies whole placements instead (localization/).
   bool verify_neighbourhoods = true;
   NeighbourhoodOptions neighbourhood;
 };
 [[nodiscard]] std::string Validate(const RecognitionOptions& options);
 
-// Matches of unordered pairs of one map, the lower id as the reference, without
-// pairs that share scans. Pairs without a pose worth reporting yield none; the
-// order is that of the ids.
+// Matches the unordered pairs of submaps of one map, the lower id as the
+// reference, without pairs that share scans. Pairs without a pose worth
+// reporting yield no match. Returns matches in the order of the ids.
 [[nodiscard]] std::vector<Match> RecognizeWithin(
     const RecognitionOptions& options, const TrajectoryPlaces& map,
     const Executor& executor, StageClock* clock);
 
-// Matches of a reference of one map and a query of another, in the same way.
+// Matches references of one map with queries of another, in the same way.
 [[nodiscard]] std::vector<Match> RecognizeBetween(
     const RecognitionOptions& options, const TrajectoryPlaces& references,
     const TrajectoryPlaces& queries, const Executor& executor,
     StageClock* clock);
 
-// The same without their neighbourhoods.
+// Does the same without verifying neighbourhoods.
 [[nodiscard]] std::vector<Match> MatchBetween(
     const RecognitionOptions& options,
     const std::map<SubmapId, Place>& references,
