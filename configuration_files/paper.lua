@@ -2,9 +2,9 @@
 -- SPDX-License-Identifier: Apache-2.0
 
 -- The method as published (Millane et al. 2019): Table I, and our choices where
--- the paper gives no value (docs/design/). For comparison, with `match --method
--- paper`; close_loops refuses it, because counting inliers does not verify a
--- match.
+-- the paper gives no value (docs/design/). For comparison, with
+-- `match --method paper`; close_loops refuses it, because counting inliers does
+-- not verify a match.
 
 include "sdf_global_constraints.lua"
 

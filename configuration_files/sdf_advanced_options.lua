@@ -25,9 +25,10 @@ SDF_GLOBAL_CONSTRAINTS = {
         detection_threshold = 0.0025,
         -- [cells] Least distance between keypoints, along either axis.
         non_maximum_suppression_cells = 4,
-        -- [cells] No keypoints closer than this to unobserved cells.
+        -- [cells] No keypoints closer than this to the border between free and
+        -- unobserved cells.
         unobserved_border_cells = 1.5,
-        -- [m] Largest distance of a keypoint to walls. Smaller: free space
+        -- [m] Largest distance of a keypoint from walls. Smaller: free space
         -- counts for less.
         max_clearance_meters = 1000.,
       },
@@ -70,7 +71,7 @@ SDF_GLOBAL_CONSTRAINTS = {
           -- [m] Features whose distance to walls differs by more do not match.
           max_clearance_difference_meters = 0.2,
         },
-        -- Poses, found by the votes of pairs of correspondences.
+        -- Candidate poses from the votes of pairs of correspondences.
         hypotheses = {
           -- Larger: more recall, slower.
           max_num_hypotheses = 80,

@@ -66,9 +66,8 @@ std::string VerdictText(const GroupOutcome& outcome) {
     case AuditVerdict::kAmbiguous:
       return "another pose of the two submaps is as good";
     case AuditVerdict::kUnlikely:
-      return outcome.group->claim.is_held
-                 ? "too little agrees"
-                 : "the walls do not support its pose";
+      return outcome.group->claim.is_held ? "too little agrees"
+                                          : "the walls do not support its pose";
     case AuditVerdict::kOutvoted:
       return "constraints with more weight contradict it";
     case AuditVerdict::kUnsupported:
@@ -104,7 +103,10 @@ std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
                          " more")
           : "";
   return absl::StrFormat(
-      "%s; margin %.1f to the next pose; support %.1f and contradiction %.1f from cycles; error %.2f m in the original map, %.2f m and %.1f deg in the map made without doubtful constraints; %d of %d constraints (submap)-(node) doubtful: %s%s",
+      "%s; margin %.1f to the next pose; support %.1f and contradiction %.1f "
+      "from cycles; error %.2f m in the original map, %.2f m and %.1f deg in "
+      "the map made without doubtful constraints; %d of %d constraints "
+      "(submap)-(node) doubtful: %s%s",
       VerdictText(outcome), group.claim.margin, group.cycles.support,
       group.cycles.contradiction, before, after.translation,
       after.rotation * 180. / M_PI, outcome.num_doubtful,
@@ -173,7 +175,9 @@ ReportContent MakeText(const std::string& input, const Audit& audit,
   ReportContent content;
   content.title = "Audit of " + FileName(input);
   content.subtitle =
-      "Every inter-submap constraint, checked against the shapes of its submaps, the other constraints, and the map made without doubtful constraints.";
+      "Every inter-submap constraint, checked against the shapes of its "
+      "submaps, the other constraints, and the map made without doubtful "
+      "constraints.";
   content.summary = MakeSummary(audit);
   AddOptimization(audit.optimization, audit.optimizations, &content);
   content.closures_heading = "Doubtful constraints";
@@ -232,8 +236,8 @@ absl::Status WriteAuditReport(const ReportRequest& request,
                                         kKeptColor});
   }
   if (audit.num_doubtful > 0) {
-    maps.push_back(
-        {"After, without the doubtful constraints", &audit.state, &audit.pose_graph});
+    maps.push_back({"After, without the doubtful constraints", &audit.state,
+                    &audit.pose_graph});
   }
   const absl::Status status =
       DrawPictures(maps, read_submaps, request.options, &content);

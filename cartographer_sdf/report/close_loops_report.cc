@@ -99,7 +99,8 @@ ReportContent MakeText(const std::string& input,
                        const LoopClosingResult& result) {
   ReportContent content;
   content.title = "Loop closures of " + FileName(input);
-  content.subtitle = "Found from the shape of free space, without a pose prior.";
+  content.subtitle =
+      "Found from the shape of free space, without a pose prior.";
   if (Count(result, ClosureStatus::kInGraph) == 0) {
     content.warnings.push_back(
         "No loop closure was found; the map is unchanged.");
@@ -108,7 +109,8 @@ ReportContent MakeText(const std::string& input,
       num_outliers > 0) {
     content.warnings.push_back(absl::StrCat(
         num_outliers,
-        " closures were rejected as outliers because the optimised map contradicts them: some places look alike. Check the map there."));
+        " closures were rejected as outliers because the optimised map "
+        "contradicts them: some places look alike. Check the map there."));
   }
   AddTornSubmaps(result.closed.torn_submaps, &content);
   content.summary = MakeSummary(result);
@@ -138,8 +140,8 @@ absl::Status WriteCloseLoopsReport(const ReportRequest& request,
   content.options = request.options_text;
   const absl::Status status = DrawPictures(
       {{"Before", &result.state, &result.state.pose_graph},
-       {"After, with the closures: red in the graph, purple refused", &result.state,
-        &result.closed.pose_graph, /*shows_links=*/true}},
+       {"After, with the closures: red in the graph, purple refused",
+        &result.state, &result.closed.pose_graph, /*shows_links=*/true}},
       read_submaps, request.options, &content);
   if (!status.ok()) return status;
   return WriteReport(request.directory, content);

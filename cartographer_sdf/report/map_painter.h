@@ -38,8 +38,9 @@ class MapPainter {
   // Pictures of the submaps added so far, and of an empty map.
   [[nodiscard]] Picture Paint() const;
   [[nodiscard]] Picture UnobservedPicture() const;
-  // Mean probability of a pixel minus 1/2: positive for walls, negative for
-  // free space; none where nothing is known.
+  // Mean probability of a pixel minus 1/2, with walls weighted more where
+  // pixels are larger than cells: positive for walls, negative for free space;
+  // none where nothing is known.
   [[nodiscard]] std::optional<double> ExcessAt(int x, int y) const;
 
  private:

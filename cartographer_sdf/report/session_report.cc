@@ -25,9 +25,8 @@ ReportedClosure Reported(const Match& match, const bool accepted,
 std::vector<ReportedClosure> ClosuresOf(const Localization& result) {
   std::vector<ReportedClosure> closures;
   for (const Match& match : result.contradictions) {
-    closures.push_back(Reported(match, false,
-                                "walls in free space at this pose",
-                                kContradictingColor));
+    closures.push_back(Reported(
+        match, false, "walls in free space at this pose", kContradictingColor));
   }
   for (size_t k = 0; k < result.placements.size(); ++k) {
     const Placement& placement = result.placements[k];
@@ -123,7 +122,8 @@ void AddMergingSummary(const MergingResult& result,
             : "not connected with the merged maps");
     if (!session.T_merged_session) {
       content->warnings.push_back(absl::StrCat(
-          names[k], " is not connected with the others and is not in the map."));
+          names[k],
+          " is not connected with the others and is not in the map."));
     }
   }
   for (const SessionLink& link : result.links) {
@@ -148,11 +148,12 @@ void AddMergingSummary(const MergingResult& result,
 }
 
 const char* CaptionOf(const Localization& result) {
-  return result.T_map_query
-             ? "The map, overlaid with the query; red where walls of one stand in the other's free space"
+  return result.T_map_query ? "The map, overlaid with the query; red where "
+                              "walls of one stand in the other's free space"
          : result.placements.empty()
              ? "The map; no placement of the query was found"
-             : "The map, overlaid with the query at its best but refused placement";
+             : "The map, overlaid with the query at its best but refused "
+               "placement";
 }
 
 MapState Moved(const Rigid2& T_picture_map, MapState state) {
@@ -254,14 +255,15 @@ absl::Status WriteMergingReport(const ReportRequest& request,
     return status;
   };
   if (!result.parts.empty()) {
-    const absl::Status status = DrawPictures(
-        {{"The merged map, with a colour for each input; red where walls of one stand in another's free space",
-          &result.state,
-          &result.closed.pose_graph,
-          /*shows_links=*/true,
-          {},
-          LayersOf(result.parts)}},
-        read, request.options, &content);
+    const absl::Status status =
+        DrawPictures({{"The merged map, with a colour for each input; red "
+                       "where walls of one stand in another's free space",
+                       &result.state,
+                       &result.closed.pose_graph,
+                       /*shows_links=*/true,
+                       {},
+                       LayersOf(result.parts)}},
+                     read, request.options, &content);
     if (!status.ok()) return status;
   }
   return WriteReport(request.directory, content);
