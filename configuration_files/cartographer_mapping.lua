@@ -2,9 +2,9 @@
 -- SPDX-License-Identifier: Apache-2.0
 
 -- Options of Cartographer itself, for cartographer_sdf_run_log: mapping with a
--- planar laser and the odometry of wheels that slip. As a robot of its own does,
--- from Cartographer's own files, which are found where it is installed. Not for
--- the searcher, whose options are in sdf_live.lua.
+-- planar laser and odometry from wheels that slip. Builds on Cartographer's own
+-- files, as a robot's configuration does; they are found where Cartographer is
+-- installed. The searcher's options are in sdf_live.lua.
 
 include "map_builder.lua"
 include "trajectory_builder.lua"
@@ -16,19 +16,20 @@ options = {
 
 MAP_BUILDER.use_trajectory_builder_2d = true
 
--- Submaps of 120 scans that were kept, each of 60 sharing theirs with the one
--- before. Smaller: less drift inside, less to recognise a place by.
+-- A submap holds twice this many kept scans and shares half of them with the
+-- previous submap. Smaller: less drift within a submap, less to recognise a
+-- place by.
 TRAJECTORY_BUILDER_2D.submaps.num_range_data = 60
--- [m] Nearer returns are the robot itself.
+-- [m] Closer returns come from the robot itself.
 TRAJECTORY_BUILDER_2D.min_range = 0.1
--- [m] Beyond it nothing is believed but that the first metres are free.
+-- [m] Of longer beams, only the free space of the first metres is used.
 TRAJECTORY_BUILDER_2D.max_range = 30.
--- Sparse scans need a search, wheels alone do not tell well enough.
+-- Sparse scans need a search: wheel odometry alone is too inaccurate.
 TRAJECTORY_BUILDER_2D.use_online_correlative_scan_matching = true
--- [rad] A scan is kept where the robot turned by so much.
+-- [rad] A scan is kept when the robot has turned by this angle.
 TRAJECTORY_BUILDER_2D.motion_filter.max_angle_radians = math.rad(2.)
 
--- Cartographer's default, 1e5, makes wheels outweigh loop closures.
+-- With Cartographer's default, 1e5, odometry outweighs loop closures.
 POSE_GRAPH.optimization_problem.odometry_translation_weight = 1e3
 POSE_GRAPH.optimization_problem.odometry_rotation_weight = 1e3
 

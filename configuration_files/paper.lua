@@ -1,10 +1,10 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 -- SPDX-License-Identifier: Apache-2.0
 
--- The method as published (Millane et al. 2019): Table I, and our choice where
--- the paper is silent (docs/design/). For comparison, by
--- `match --method paper`: its count of inliers is no verification, and
--- close_loops refuses it.
+-- The method as published (Millane et al. 2019): Table I, and our choices where
+-- the paper gives no value (docs/design/). For comparison, with
+-- `match --method paper`; close_loops refuses it, because counting inliers does
+-- not verify a match.
 
 include "sdf_global_constraints.lua"
 

@@ -1,54 +1,57 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 -- SPDX-License-Identifier: Apache-2.0
 
--- The options that rarely need a change, with their defaults. Those that users
--- do change are in sdf_global_constraints.lua, which includes this file; change
--- these in the same way.
+-- Options that rarely need a change, with their defaults. The options that
+-- users do change are in sdf_global_constraints.lua, which includes this file;
+-- change these in the same way.
 
 SDF_GLOBAL_CONSTRAINTS = {
   loop_closing = {
     -- How a submap is described.
     place = {
       field = {
-        -- Cells above are walls. Cartographer's hits start at 0.55.
+        -- Cells above this probability are walls. Cartographer's hits start at
+        -- 0.55.
         occupied_probability = 0.5,
-        -- [m] How far the distance field reaches beyond the submap.
+        -- [m] How far the distance field extends beyond the submap.
         padding_meters = 0.6,
       },
       keypoint = {
-        -- [cells] Gaussian before differentiation. Larger: fewer, smoother
-        -- keypoints.
+        -- [cells] Standard deviation of the Gaussian applied before
+        -- differentiation. Larger: fewer, smoother keypoints.
         smoothing_sigma_cells = 3.,
         -- [1 / cells^2] Least |determinant of the Hessian|. Larger: fewer, more
         -- distinctive keypoints.
         detection_threshold = 0.0025,
         -- [cells] Least distance between keypoints, along either axis.
         non_maximum_suppression_cells = 4,
-        -- [cells] No keypoints this near to where free space meets the unknown.
+        -- [cells] No keypoints closer than this to the border between free and
+        -- unobserved cells.
         unobserved_border_cells = 1.5,
-        -- [m] No keypoints farther from walls. Smaller: free space counts for
-        -- less.
+        -- [m] Largest distance of a keypoint from walls. Smaller: free space
+        -- counts for less.
         max_clearance_meters = 1000.,
       },
       descriptor = {
-        -- [m] Window around a keypoint. Larger: more distinctive, less often
-        -- the same from another side.
+        -- [m] Radius of the window around a keypoint. Larger: more distinctive,
+        -- less repeatable from other viewpoints.
         radius_meters = 0.8,
         -- Bins of the histogram of relative gradient orientations.
         num_bins = 17,
-        -- Bins of the histogram that finds the dominant orientation.
+        -- Bins of the histogram that determines the dominant orientation.
         num_orientation_bins = 36,
-        -- [1 / mm] Of the mean distance beside a histogram of length 1. Larger:
-        -- places of other width are told apart more sharply.
+        -- [1 / mm] Weight of the mean distance relative to a histogram of
+        -- length 1. Larger: separates places of different width more sharply.
         distance_weight = 0.002,
-        -- Standard deviation of the window's Gaussian, of the radius.
+        -- Standard deviation of the window's Gaussian, as a fraction of the
+        -- radius.
         gaussian_sigma_ratio = 0.5,
         -- Peaks of the orientation histogram above this fraction of the highest
-        -- are features of their own. 1: the highest alone.
+        -- yield additional features. 1: only the highest peak.
         secondary_orientation_ratio = 1.,
       },
     },
-    -- Which submaps see the same place.
+    -- Recognition of submaps that see the same place.
     recognition = {
       -- How a pair of submaps is matched.
       match = {
@@ -56,31 +59,32 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- published (see paper.lua).
         method = "sdf",
         correspondence = {
-          -- Per feature, nearest in descriptor space. Larger: more recall,
-          -- slower.
+          -- Nearest neighbours per feature in descriptor space. Larger: more
+          -- recall, slower.
           num_neighbours = 5,
-          -- Whether features without a clearly nearest neighbour are dropped.
+          -- Whether to drop features without a clearly nearest neighbour.
           use_ratio_test = false,
           max_ratio = 0.75,
-          -- Whether maxima match maxima only, saddles saddles, and minima
-          -- minima.
+          -- Whether features match only features of the same kind (maximum,
+          -- saddle, minimum).
           same_kind_only = true,
           -- [m] Features whose distance to walls differs by more do not match.
           max_clearance_difference_meters = 0.2,
         },
-        -- Poses that pairs of correspondences vote for.
+        -- Candidate poses from the votes of pairs of correspondences.
         hypotheses = {
           -- Larger: more recall, slower.
           max_num_hypotheses = 80,
           votes = {
-            -- The best correspondences, which are paired. Time grows with the
+            -- Number of best correspondences to pair. Time grows with its
             -- square.
             max_num_correspondences = 400,
-            -- [m] Tolerance of the distance between two keypoints.
+            -- [m] Tolerance for the distance between two keypoints.
             max_length_difference_meters = 0.2,
-            -- [rad] Tolerance of the keypoints' orientations.
+            -- [rad] Tolerance for the keypoints' orientations.
             max_orientation_difference = 0.44,
-            -- [m] Keypoints closer together than this fix no rotation.
+            -- [m] Keypoints closer together than this do not determine a
+            -- rotation.
             min_baseline_meters = 1.5,
             -- [m], [rad] Bins of the accumulator of poses.
             bin_distance_meters = 0.5,
@@ -88,7 +92,7 @@ SDF_GLOBAL_CONSTRAINTS = {
           },
         },
         verification = {
-          -- Which hypotheses are worth refining: a coarse test on few wall
+          -- Selection of hypotheses to refine: a coarse test on few wall
           -- points, then a finer one on more.
           ranking = {
             num_coarse_points = 40,
@@ -99,14 +103,14 @@ SDF_GLOBAL_CONSTRAINTS = {
             hit_distance_meters = 0.3,
             -- [m] Walls this deep in the other's free space contradict.
             contradiction_distance_meters = 0.5,
-            -- A contradiction counts so many times as much as a hit.
+            -- Weight of a contradiction relative to a hit.
             contradiction_weight = 2.,
             -- (hits - weight * contradictions) / points. Larger: faster, less
             -- recall.
             min_coarse_score = 0.2,
             min_fine_score = 0.45,
-            -- Hypotheses worse than the best by more are not refined. Larger:
-            -- slower, more rivals are noticed.
+            -- Hypotheses that score lower than the best by more are not
+            -- refined. Larger: slower, detects more rivals.
             max_fine_score_gap = 0.25,
           },
           -- Refinement of a pose on the distance fields.
@@ -119,18 +123,18 @@ SDF_GLOBAL_CONSTRAINTS = {
             -- Wall points of each submap. Larger: more precise, slower.
             max_num_points = 300,
           },
-          -- How walls and free space are compared at a refined pose.
+          -- Comparison of walls and free space at a refined pose.
           agreement = {
             -- [m] Walls this near to each other agree.
             hit_distance_meters = 0.15,
             -- [m] Walls this deep in the other's free space contradict.
             contradiction_distance_meters = 0.25,
-            -- Whether walls and free space count by how certain they are.
+            -- Whether to weight walls and free space by their certainty.
             weigh_by_certainty = true,
             -- Wall points of each submap. Larger: more precise, slower.
             max_num_points = 2000,
           },
-          -- From the evidence to a verdict.
+          -- Verdict from the evidence.
           judgement = {
             -- Score = log-odds of being right. Learned by
             -- scripts/learn_score.py on Intel, ACES, Killian Court, Willow
@@ -156,22 +160,24 @@ SDF_GLOBAL_CONSTRAINTS = {
             min_scatter_eigenvalue = 0.03,
           },
         },
-        -- [m] Keypoints this near under the final pose are reported as inliers.
+        -- [m] Keypoints this close under the final pose are reported as
+        -- inliers.
         inlier_distance_meters = 0.3,
-        -- These only for method "paper".
+        -- Only for method "paper".
         ransac = {
           max_num_iterations = 2000,
           -- [m]
           inlier_distance_meters = 0.3,
           min_baseline_meters = 1.,
         },
-        -- Fewer make no match by method "paper".
+        -- Least number of inliers of a match by method "paper".
         min_num_inliers = 12,
-        -- Of RANSAC.
+        -- Random seed of RANSAC.
         seed = 42,
       },
       retrieval = {
-        -- Per feature, nearest of the whole map. Larger: more recall, slower.
+        -- Nearest neighbours per feature in the whole map. Larger: more recall,
+        -- slower.
         num_neighbours = 100,
         -- [m] Features whose distance to walls differs by more do not match.
         max_clearance_difference_meters = 0.2,
@@ -187,33 +193,33 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Submaps with a lower score are not matched. Larger: faster, less
         -- recall.
         min_score = 0.06,
-        -- The best so many are matched whatever their score, and never more
-        -- than max_num_candidates.
+        -- The best min_num_candidates are matched whatever their score, and
+        -- never more than max_num_candidates.
         min_num_candidates = 10,
         max_num_candidates = 200,
       },
-      -- How the neighbours of both submaps, where local SLAM places them,
-      -- verify a match.
+      -- Neighbourhood verification: the neighbours of both submaps, where local
+      -- SLAM places them, support or contradict a match.
       neighbourhood = {
-        -- Neighbours on each side, and how far apart their indices are. Every
-        -- other submap shares no scans. Larger: more evidence, slower.
+        -- Number of neighbours on each side, and the step between their
+        -- indices; submaps two indices apart share no scans. Larger: more
+        -- evidence, slower.
         num_steps = 2,
         index_step = 2,
-        -- [m^2] Neighbouring pairs that have observed less in common are
+        -- [m^2] Neighbouring pairs with a smaller commonly observed area are
         -- skipped.
         min_overlap_area = 15.,
         -- Wall points of each neighbour. Larger: more precise, slower.
         num_points = 600,
         -- [m] Prior: a match is scored as if its neighbourhood had shown this
-        -- much more wall ...
+        -- much additional wall ...
         prior_wall_length_meters = 50.,
         -- ... of which this fraction contradicts. Larger: agreement counts for
         -- more.
         prior_contradiction_ratio = 0.05,
-        -- The neighbourhood of matches with a lower score of their own is
-        -- skipped.
+        -- Matches whose own score is lower skip neighbourhood verification.
         min_pair_score = -5.,
-        -- From this score on a match proposes poses to neighbouring pairs.
+        -- Least score at which a match proposes poses to neighbouring pairs.
         -- Larger: faster, less recall.
         min_proposing_score = 0.,
         -- Score = log-odds of being right. Learned by scripts/learn_score.py
@@ -226,63 +232,65 @@ SDF_GLOBAL_CONSTRAINTS = {
           log_contradiction = -5.57,
           bias = -0.633,
         },
-        -- The neighbourhood raises a pair's own score by no more than this.
-        -- Larger: accepts more matches whose own walls hardly agree.
+        -- Most that the neighbourhood may raise a pair's own score. Larger:
+        -- accepts more matches whose own walls hardly agree.
         max_gain = 3.,
       },
     },
     -- From matches to an optimised pose graph.
     closing = {
-      -- What counts as a torn submap. Agreement is the ratio of hits less twice
-      -- that of contradictions.
+      -- Detection of torn submaps. Agreement is the ratio of hits minus twice
+      -- the ratio of contradictions.
       tear = {
-        -- Parts of equally many scans that are compared with each other.
-        -- Larger: finds slips near a submap's ends, but fewer walls are seen
-        -- twice.
+        -- Number of parts, with equally many scans, that are compared with each
+        -- other. Larger: finds slips near a submap's ends, but fewer walls are
+        -- seen twice.
         num_parts = 6,
-        -- [m] Cells of the grids that the parts are drawn into.
+        -- [m] Cell size of the grids that the parts are drawn into.
         resolution_meters = 0.1,
         -- [m] Points farther from the robot are left out.
         max_range_meters = 30.,
         -- Wall cells that two parts must have in common.
         min_num_points = 50,
-        -- How much better two parts must agree once one is moved. Lower: finds
-        -- smaller tears, and takes moved doors and people for some.
+        -- Least gain in agreement when one of two parts is moved. Smaller:
+        -- finds smaller tears, but mistakes moved doors and people for tears.
         min_gain = 0.6,
-        -- How well they must agree at the moved pose.
+        -- Least agreement at the moved pose.
         min_agreement = 0.7,
         -- [m], [rad] The move must reach one of these.
         min_translation_meters = 0.2,
         min_rotation = 0.035,
       },
-      -- Which closures are consistent, by cycles with the odometry between.
+      -- Consistency of closures, tested on cycles through the odometry between
+      -- them.
       consistency = {
-        -- [m], [rad] Of a closure.
+        -- [m], [rad] Standard deviations of a closure.
         closure_translation_sigma_meters = 0.15,
         closure_rotation_sigma = 0.02,
         -- Cycles that fail to close by more standard deviations are
         -- inconsistent.
         max_mahalanobis_distance = 4.03,
-        -- [m] Cycles whose end is less certain than this are not tested.
+        -- [m] Cycles whose end has a larger standard deviation are not tested.
         max_cycle_sigma_meters = 1.,
         -- Sum of the scores of consistent closures that counts as support.
         min_support = 8.,
       },
-      -- How a closure becomes constraints between submaps and nodes.
+      -- Conversion of a closure into constraints between submaps and nodes.
       constraints = {
-        -- Nodes of each of the two submaps. Larger: a stronger, smoother pull.
+        -- Number of nodes of each of the two submaps. Larger: a stronger,
+        -- smoother pull.
         num_nodes_per_submap = 5,
         -- [m], [rad] Standard deviations of a node's pose within its submap.
         translation_sigma_meters = 0.1,
         rotation_sigma = 0.02,
-        -- A node yields no constraint where registration moves it by more than
-        -- so many standard deviations, ...
+        -- A node yields no constraint if registration moves it by more than
+        -- this number of standard deviations, ...
         max_num_sigmas = 3.,
         -- ... or leaves a smaller fraction of its scan on walls.
         min_hit_ratio = 0.6,
       },
       -- As Cartographer's POSE_GRAPH.optimization_problem, with its defaults.
-      -- Use the weights that the map was made with: others bend it.
+      -- Use the weights that the map was made with; other weights distort it.
       optimization = {
         huber_scale = 1e1,
         local_slam_pose_translation_weight = 1e5,
@@ -291,7 +299,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         odometry_rotation_weight = 1e5,
         max_num_iterations = 200,
       },
-      -- Closures that the optimised map contradicts are taken out, and the rest
+      -- Closures that the optimised map contradicts are removed, and the map is
       -- optimised again.
       outlier_rejection = {
         -- [rad]
@@ -300,79 +308,82 @@ SDF_GLOBAL_CONSTRAINTS = {
       },
     },
   },
-  -- Where a map, or the beginning of a drive, lies in another map (relocalize,
-  -- merge, live). All else is as in loop_closing.
+  -- Localisation of a map, or of the beginning of a drive, in another map
+  -- (relocalize, merge, live). The other options are those of loop_closing.
   localization = {
     -- When a pose in the map is certain.
     placement = {
-      -- [m] Submaps closer together than this are partly the same evidence.
-      -- Larger: more must be seen.
+      -- [m] Submaps closer together than this count partly as the same
+      -- evidence. Larger: more must be seen.
       independent_distance_meters = 10.,
-      -- One match counts at most so much (log-odds).
+      -- Largest contribution of one match (log-odds).
       max_place_score = 10.,
-      -- A submap counts by its best match, and with this fraction of its other
-      -- matches. Larger: less must be seen, more look-alikes are believed.
+      -- A submap contributes its best match, and this fraction of its other
+      -- matches. Larger: less must be seen, more look-alikes are accepted.
       further_match_weight = 0.,
       -- Largest fraction of the submaps that may contradict the answer. Larger:
       -- tolerates more change since the map was made.
       max_contradicting_fraction = 0.3,
-      -- [m], [rad] Answers that differ by less are the same. Larger: tolerates
-      -- more drift within the map, overlooks look-alikes close by.
+      -- [m], [rad] Answers that differ by less count as the same. Larger:
+      -- tolerates more drift within the map, but overlooks look-alikes close
+      -- by.
       same_distance_meters = 1.,
       same_rotation = 0.2,
-      -- [m^2] Least area seen, summed over the submaps.
+      -- [m^2] Least observed area, summed over the submaps.
       min_observed_area = 20.,
     },
-    -- Whether matches count, too, that show too little to be accepted, but are
-    -- more likely right than wrong. One must be accepted in any case.
+    -- Whether to count matches that show too little to be accepted but are more
+    -- likely right than wrong. At least one must be accepted in any case.
     count_likely_matches = false,
-    -- Submaps of the query, evenly spaced, that are searched in the map first;
-    -- twice as many each time that leaves the answer uncertain. Larger: slower
-    -- where few are enough.
+    -- Number of submaps of the query, evenly spaced, to search for in the map
+    -- first; doubled while the answer is uncertain. Larger: slower where few
+    -- suffice.
     num_first_places = 2,
-    -- Pairs of submaps that are verified where the answer lays them over each
-    -- other. Larger: more evidence for and against it, slower.
+    -- Number of pairs of submaps that overlap under the answer and are verified
+    -- there. Larger: more evidence for and against it, slower.
     max_num_confirmed_pairs = 50,
   },
   -- Grids drawn from scans: of the first seconds of a drive, and of maps
   -- without submaps.
   scan_places = {
-    -- Scans of each; as Cartographer's 2 * num_range_data.
+    -- Scans per grid; corresponds to Cartographer's 2 * num_range_data.
     num_scans = 120,
     -- As Cartographer's probability_grid_range_data_inserter.
     hit_probability = 0.55,
     miss_probability = 0.49,
   },
-  -- Whether merged maps fold over each other (merge).
+  -- Detection of merged maps that fold over each other (merge).
   fold_check = {
-    -- Submaps whose walls stand in each other's free space by more than this
-    -- fraction contradict each other. Larger: tolerates more change between the
-    -- maps.
+    -- Submaps contradict each other if a larger fraction of their walls lies in
+    -- each other's free space. Larger: tolerates more change between the maps.
     max_contradiction_ratio = 0.05,
   },
-  -- Which constraints of a map are doubtful (audit). All else is as in
-  -- loop_closing.
+  -- Detection of doubtful constraints of a map (audit). The other options are
+  -- those of loop_closing.
   audit = {
-    -- [m], [rad] Constraints of a pair of submaps whose poses differ by less
-    -- are judged together.
+    -- [m], [rad] Constraints of one pair of submaps are judged together if
+    -- their poses differ by less.
     grouping = {
       max_distance_meters = 0.5,
       max_rotation = 0.15,
     },
-    -- Larger ratio of wall points in the other's free space: contradicted.
-    -- Smaller: finds more wrong constraints, drops more right ones.
+    -- Constraints with a larger fraction of wall points in the other's free
+    -- space are contradicted. Smaller: finds more wrong constraints, drops more
+    -- right ones.
     max_contradiction_ratio = 0.1,
-    -- A pose that is better than any other of its pair by less is ambiguous
-    -- (log-odds; negative: another one is better).
+    -- Least lead over the best other pose of the pair; below it the pose is
+    -- ambiguous (log-odds; negative: another pose is better).
     min_margin = 0.,
-    -- Least score; log-odds. Larger: more constraints need support by others.
+    -- Least score (log-odds). Larger: more constraints need the support of
+    -- others.
     min_score = 0.,
-    -- [m], [rad] A doubtful constraint stays where the map that is made without
-    -- it agrees to this. Larger: fewer right constraints are dropped.
+    -- [m], [rad] A doubtful constraint is kept if the map made without it
+    -- agrees with it to this tolerance. Larger: fewer right constraints are
+    -- dropped.
     max_agreeing_translation_meters = 0.3,
     max_agreeing_rotation = 0.1,
-    -- What that map contradicts by more is doubtful too. Smaller: finds smaller
-    -- errors, drops more right ones.
+    -- Constraints that this map contradicts by more are doubtful too. Smaller:
+    -- finds smaller errors, drops more right ones.
     outlier_rejection = {
       -- [m], [rad]
       max_translation_error_meters = 0.5,
@@ -380,7 +391,7 @@ SDF_GLOBAL_CONSTRAINTS = {
       max_num_rounds = 10,
     },
   },
-  -- The HTML page that shows what was done.
+  -- The HTML report.
   report = {
     -- [pixels] Longer side of the pictures of the whole map.
     map_picture_pixels = 1600,

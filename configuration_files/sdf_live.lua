@@ -1,25 +1,28 @@
 -- SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 -- SPDX-License-Identifier: Apache-2.0
 
--- Options of the searcher beside a live Cartographer, with their defaults: good
--- for a lidar of 20 to 40 m and submaps of 5 cm. The file stands beside
--- Cartographer's own, which must not have these keys. To change some, write a
--- file that includes this one, as described in sdf_global_constraints.lua.
+-- Options of the searcher beside a live Cartographer, with their defaults,
+-- which suit a lidar with a range of 20 to 40 m and submaps with cells of 5 cm.
+-- This file is separate from Cartographer's own, which must not have these
+-- keys. To change options, write a file that includes this one, as described in
+-- sdf_global_constraints.lua.
 
 include "sdf_global_constraints.lua"
 
 SDF_LIVE = {
-  -- false: Cartographer runs as if we were not there.
+  -- false: Cartographer runs as it does without the searcher.
   enabled = true,
-  -- Whether closures become constraints. false: they are logged and counted.
+  -- Whether closures become constraints. false: they are only logged and
+  -- counted.
   inject_constraints = true,
-  -- Whether each closure makes a line in the log.
+  -- Whether to log a line for each closure.
   log_closures = true,
-  -- Whether the places of a loaded MAP.pbstream are taken from
-  -- MAP.pbstream.places where that fits, and else left there for the next time.
+  -- Whether to read the places of a loaded MAP.pbstream from
+  -- MAP.pbstream.places if that file fits the map and options, and to write it
+  -- otherwise.
   use_place_files = true,
-  -- Submaps of one trajectory are matched from this difference of their indices
-  -- on; nearer ones share scans.
+  -- Least difference of the indices of two submaps of one trajectory; closer
+  -- ones share scans and are not matched.
   min_index_gap = 3,
   -- As for saved maps, from the description of a submap to its constraints.
   place = SDF_GLOBAL_CONSTRAINTS.loop_closing.place,
@@ -31,36 +34,37 @@ SDF_LIVE = {
   -- Whether matches are verified together with the neighbours of both submaps.
   -- The newest submap has neighbours on one side only.
   verify_neighbourhoods = false,
-  -- Where a new trajectory is in a loaded map.
+  -- Localisation of a new trajectory in a loaded map.
   localization = {
-    -- Whether it is asked for every trajectory that starts without a pose.
+    -- Whether to localise every trajectory that starts without a pose.
     enabled = true,
-    -- [m] Driving between queries. Smaller: sooner, more CPU time.
+    -- [m] Distance driven between queries. Smaller: localised sooner, more CPU
+    -- time.
     query_interval_meters = 0.5,
-    -- [m] Scans of so much driving make the query. Larger: more is seen, and
-    -- local SLAM bends more.
+    -- [m] Length of the driven path whose scans form the query. Larger: more is
+    -- seen, but local SLAM drifts more.
     window_meters = 15.,
-    -- [m] Cells of the query's grid; best that of the map's submaps.
+    -- [m] Cell size of the query's grid; use that of the map's submaps.
     resolution_meters = 0.05,
-    -- The best so many submaps of the map are matched with the query. Larger:
-    -- found sooner, more CPU time.
+    -- Number of best submaps of the map to match with the query. Larger:
+    -- localised sooner, more CPU time.
     max_num_candidates = 50,
-    -- As for saved maps, but for what is below.
+    -- As for saved maps, except for the changes below.
     localizer = SDF_GLOBAL_CONSTRAINTS.localization,
-    -- Queries in a row that must say the same.
+    -- Consecutive queries that must agree.
     min_num_queries = 2,
-    -- [m], [rad] Poses nearer than this count as the same.
+    -- [m], [rad] Poses that differ by less agree.
     max_translation_difference_meters = 0.5,
     max_rotation_difference = 0.1,
   },
 }
 
--- The best so many places are matched with a new one. Larger: more is found,
--- more CPU time.
+-- Number of best places to match with a new one. Larger: finds more, more CPU
+-- time.
 SDF_LIVE.retrieval.max_num_candidates = 15
 
--- A young query is one place, which sees too little for most of its matches to
--- be certain: all matches that may be right add up, and must be more in return.
+-- An early query is a single place and sees too little for most of its matches
+-- to be certain. So all likely matches count, and the required total is higher.
 SDF_LIVE.localization.localizer.count_likely_matches = true
 SDF_LIVE.localization.localizer.placement.further_match_weight = 1.
 SDF_LIVE.localization.localizer.placement.min_score = 7.

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Lua reports errors by longjmp, which must not skip destructors: functions
-// that call what may raise hold no C++ objects, these live in `Loader`.
+// that call Lua functions that may raise hold no C++ objects; these live in
+// `Loader`.
 
 #include "cartographer_sdf/config/lua_dictionary.h"
 
@@ -29,21 +30,21 @@ namespace cartographer_sdf {
 namespace {
 
 // A configuration of thousands of options needs a hundredth of each. As no
-// function in reach does unbounded work on bounded memory, together they bound
-// the time, too.
+// available function does unbounded work on bounded memory, together these
+// limits also bound the time.
 constexpr size_t kMaxFileSize = size_t{1} << 20;
 constexpr size_t kMaxAllocated = size_t{16} << 20;
 constexpr int kMaxInstructions = 1000000;
 constexpr int kMaxDepth = 16;
-// Of all values with their paths, in characters: tables and strings that occur
-// in several places count as often.
+// Total size of all values with their paths, in characters; tables and strings
+// that occur in several places count each time.
 constexpr size_t kMaxConfigurationSize = 1000000;
 constexpr size_t kMaxMessageLength = 300;
 
-// What configuration files may call. Not in it on purpose: files (io, os, load,
-// dofile), chance (math.random), catching the errors that enforce the limits
-// (pcall), finalizers (setmetatable), and what takes long on short strings
-// (patterns, string.rep).
+// Functions that configuration files may call. Deliberately absent: files (io,
+// os, load, dofile), randomness (math.random), catching the errors that enforce
+// the limits (pcall), finalizers (setmetatable), and functions that take long
+// on short strings (patterns, string.rep).
 constexpr std::string_view kBaseFunctions[] = {"assert",   "error",    "ipairs",
                                                "next",     "pairs",    "select",
                                                "tonumber", "tostring", "type"};
@@ -67,7 +68,7 @@ struct Loader {
   std::string error;
 
   bool IsLoaded(const char* name) const { return loaded.count(name) != 0; }
-  // False with an error.
+  // Returns false and sets an error.
   bool Find(const std::string& name);
   bool ReadFile(const std::string& name);
   // Pushes the chunk of the file, or nothing.
@@ -120,7 +121,7 @@ bool Loader::Load(lua_State* const lua, const char* const name) {
   return false;
 }
 
-// Counts what was ever allocated, not what is in use, to bound the time too.
+// Counts all memory ever allocated, not memory in use, to bound the time too.
 void* Allocate(void* const user_data, void* const block, const size_t old_size,
                const size_t new_size) {
   if (new_size == 0) {
@@ -153,7 +154,7 @@ int Include(lua_State* const lua) {
   return 0;
 }
 
-// Removes everything else from the table on top of the stack, and pops it.
+// Removes all other keys from the table on top of the stack, and pops it.
 template <size_t N>
 void KeepOnly(lua_State* const lua, const std::string_view (&names)[N]) {
   lua_pushnil(lua);
@@ -169,7 +170,7 @@ void KeepOnly(lua_State* const lua, const std::string_view (&names)[N]) {
   lua_pop(lua, 1);
 }
 
-// Runs in protected mode; leaves what the file returns.
+// Runs in protected mode; leaves the file's result on the stack.
 int RunFile(lua_State* const lua) {
   Loader* const loader = static_cast<Loader*>(lua_touserdata(lua, 1));
   luaL_requiref(lua, "_G", luaopen_base, 1);
@@ -199,12 +200,12 @@ std::string DescribeError(lua_State* const lua, const int status) {
   return PrintableLine(lua_tostring(lua, -1));
 }
 
-// Converts Lua values by calls that cannot raise.
+// Converts Lua values with calls that cannot raise.
 class Converter {
  public:
   explicit Converter(lua_State* const lua) : lua_(lua) {}
 
-  // Adds the value on top of the stack, which has that path.
+  // Adds the value on top of the stack under `path`.
   [[nodiscard]] bool Add(const std::string& path);
 
   std::map<std::string, LuaValue> values;

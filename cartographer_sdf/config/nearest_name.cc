@@ -9,7 +9,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Longer names are garbage, and the distance takes quadratic time.
+// Longer names are garbage, and computing the distance takes quadratic time.
 constexpr size_t kMaxLength = 100;
 
 size_t LevenshteinDistance(const std::string& a, const std::string& b) {

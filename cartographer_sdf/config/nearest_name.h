@@ -10,9 +10,9 @@
 
 namespace cartographer_sdf {
 
-// The candidate that `name` is most likely a misspelling of: least Levenshtein
-// distance, at most a third of the length of `name` (rounded up); the first
-// one on ties. None where nothing is that near.
+// Returns the candidate that `name` most likely misspells: that with the least
+// Levenshtein distance, at most a third of the length of `name` (rounded up);
+// the first one on ties. None if no candidate is that near.
 [[nodiscard]] std::optional<std::string> NearestName(
     const std::string& name, const std::vector<std::string>& candidates);
 

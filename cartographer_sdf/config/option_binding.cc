@@ -44,7 +44,7 @@ void OptionReader::AddError(const std::string& path,
   if (error_.empty()) error_ = absl::StrCat(path, " ", problem);
 }
 
-// A misspelt key is also a missing one; it is the better one to name.
+// A misspelt key is also a missing key; naming the misspelt one helps more.
 absl::Status OptionReader::Result() const {
   std::string error = error_;
   for (const auto& [path, value] : dictionary_.values) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Binds the fields of a struct to the keys of a Lua table in one place, for
-// reading and for writing. Beside the struct, in its namespace:
+// reading and writing. Define beside the struct, in its namespace:
 //
 //   inline void VisitOptions(OptionVisitor& visit, FooOptions& options) {
 //     visit("radius_meters", options.radius_meters);
@@ -26,7 +26,7 @@
 
 namespace cartographer_sdf {
 
-// Visits the options of a struct, and of those within, in their order.
+// Visits the options of a struct and of its nested structs, in order.
 class OptionVisitor {
  public:
   virtual ~OptionVisitor() = default;
@@ -50,11 +50,11 @@ class OptionVisitor {
   virtual void Visit(const char* key, double& option) = 0;
   virtual void Visit(const char* key, int& option) = 0;
   virtual void Visit(const char* key, bool& option) = 0;
-  // `index` is that of one of the names.
+  // `index` refers to `names`.
   virtual void VisitName(const char* key, const std::vector<std::string>& names,
                          int& index) = 0;
-  // Before and after a nested struct, which is passed over if Enter says so;
-  // `problem` is what its Validate says.
+  // Called before and after a nested struct, which is skipped if Enter returns
+  // false; `problem` is the result of its Validate.
   virtual bool Enter(const char* key) = 0;
   virtual void Leave(const std::string& problem) = 0;
 };
@@ -64,7 +64,7 @@ class OptionReader : public OptionVisitor {
   explicit OptionReader(const LuaDictionary& dictionary)
       : dictionary_(dictionary) {}
 
-  // What is wrong with the file, or OK.
+  // The first error in the file, or OK.
   [[nodiscard]] absl::Status Result() const;
 
  private:
@@ -75,14 +75,14 @@ class OptionReader : public OptionVisitor {
                  int& index) override;
   bool Enter(const char* key) override;
   void Leave(const std::string& problem) override;
-  // Null, with an error, where it is missing or of another type.
+  // Adds an error and returns null if the value is missing or of another type.
   template <typename T>
   const T* Find(const char* key, const char* type_name);
   [[nodiscard]] std::string PathOf(const char* key) const;
   void AddError(const std::string& path, const std::string& problem);
 
   const LuaDictionary& dictionary_;
-  // The keys of the tables around what is visited.
+  // The keys of the enclosing tables.
   std::vector<std::string> tables_;
   std::vector<std::string> visited_;
   std::string error_;
@@ -106,8 +106,8 @@ class OptionWriter : public OptionVisitor {
   std::string text_;
 };
 
-// The options in the table `name` of a file, see LoadLuaDictionary; those that
-// are not visited are as given.
+// Loads the options in the table `name` of a file, see LoadLuaDictionary.
+// Fields that are not visited keep their value in `options`.
 template <typename T>
 [[nodiscard]] absl::StatusOr<T> LoadTable(
     const std::vector<std::string>& directories, const std::string& basename,
@@ -129,7 +129,7 @@ template <typename T>
   return writer.text();
 }
 
-// As a file that LoadTable reads.
+// A file that LoadTable reads.
 template <typename T>
 [[nodiscard]] std::string FormatFile(const char* const name, const T& options) {
   return FormatTable(name, options) + "\nreturn " + name + "\n";

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The Lua keys of every option struct; see option_binding.h. The Lua files say
-// what each does.
+// The Lua keys of every option struct; see option_binding.h. The Lua files
+// describe each option.
 
 #ifndef CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_
 #define CARTOGRAPHER_SDF_CONFIG_OPTION_KEYS_H_

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// All options of the program, and the one place that says under which keys of
-// SDF_GLOBAL_CONSTRAINTS they are found.
+// All options of the program, and their keys in SDF_GLOBAL_CONSTRAINTS.
 
 #ifndef CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
 #define CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_
@@ -20,7 +19,7 @@
 
 namespace cartographer_sdf {
 
-// The table of the configuration files.
+// The name of the table in the configuration files.
 constexpr char kOptionsTable[] = "SDF_GLOBAL_CONSTRAINTS";
 
 struct Options {
@@ -32,15 +31,16 @@ struct Options {
   ReportOptions report;
 };
 
-// Of what concerns several stages; each stage's own options are validated by
-// themselves.
+// Checks options that concern several stages; each stage's own options are
+// validated separately.
 [[nodiscard]] std::string Validate(const Options& options);
 
-// Looks for the file and what it includes in the directories, in their order.
+// Looks for the file and the files it includes in the directories, in order.
 [[nodiscard]] absl::StatusOr<Options> LoadOptions(
     const std::vector<std::string>& directories, const std::string& basename);
 
-// What places depend on, as text: the key of place files (place_file.h).
+// The options that places depend on, as text: the key of place files
+// (place_file.h).
 [[nodiscard]] std::string FormatPlaceOptions(const PlaceOptions& place,
                                              const MatchOptions& match);
 

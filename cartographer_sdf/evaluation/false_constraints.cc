@@ -25,20 +25,22 @@
 namespace cartographer_sdf {
 namespace {
 
-// Overlap of what counts as one place [m^2].
+// Submaps with at least this overlap show one place [m^2].
 constexpr double kMinOverlapArea = 20.;
-// A pose this far from the map's is wrong [m], [rad].
+// A pose that differs this much from the map's is wrong [m], [rad].
 constexpr PoseTolerance kMinError{1.2, 0.4};
 // Slides along the walls [m].
 constexpr double kMinSlide = 1.5;
 constexpr double kMaxSlide = 6.;
 constexpr double kSlideStep = 0.25;
-// Half turns are tried about points within so many steps of 1 m.
+// Half turns are tried about the points of a grid with this number of 1 m steps
+// in each direction.
 constexpr int kMaxHalfTurnSteps = 2;
 constexpr int kNumAgreementPoints = 500;
-// Pairs of different places that are matched to find aliased ones.
+// Number of pairs of different places to match in search of aliases.
 constexpr size_t kNumTwinCandidates = 600;
-// Neighbours on either side of a row's first pair, and the least of a row.
+// Neighbours on either side of a row's first pair, and the limits on the number
+// of pairs in a row.
 constexpr int kRowReach = 2;
 constexpr size_t kMinRowPairs = 3;
 constexpr size_t kMaxRowPairs = 6;
@@ -49,8 +51,8 @@ constexpr const char* kKindNames[] = {"corridor", "door", "half_turn",
 
 // Nodes of each submap of a pair that get a constraint to the other.
 constexpr int kNumNodesPerSubmap = 2;
-// Where the scan is not on walls to this extent there is none, as there is a
-// least score in Cartographer. Has no effect on random poses.
+// A scan with a smaller fraction on walls yields no constraint, similar to
+// Cartographer's minimum score. Has no effect on random poses.
 constexpr double kMinHitRatio = 0.55;
 
 // Weights are those of the map's own inter-submap constraints.
@@ -69,7 +71,8 @@ ConstraintOptions ForgingOptions(const ConstraintOptions& closing,
   return constraint_options;
 }
 
-// Makes wrong poses of pairs of a map's submaps, and constraints of them.
+// Generates wrong poses for pairs of a map's submaps, and constraints from
+// them.
 class Forger {
  public:
   Forger(const LoopClosingOptions& loop_closing, const uint32_t seed,
@@ -113,8 +116,8 @@ class Forger {
         [](const PairPose& a, const PairPose& b) { return a.score > b.score; });
   }
 
-  // The constraints of one more pair, or row, of that kind; empty where the
-  // map has no more.
+  // Returns the constraints of one more pair, or row, of this kind; empty if
+  // the map has no more.
   std::vector<Constraint> Forge(const FalseKind kind) {
     switch (kind) {
       case FalseKind::kTwin:
@@ -184,7 +187,8 @@ class Forger {
            measure(query, reference, pose.Inverse());
   }
 
-  // The wrong pose, registered, that looks most alike; none where none is.
+  // Returns the registered wrong pose that looks most alike; none if there is
+  // no such pose.
   [[nodiscard]] std::optional<Rigid2> BestWrong(
       const IdPair& ids, const std::vector<Rigid2>& guesses) const {
     std::optional<Rigid2> best;
@@ -201,7 +205,7 @@ class Forger {
     return best;
   }
 
-  // In the frame of the first; none where the pair can't be registered.
+  // In the frame of the first submap; none if registration fails.
   [[nodiscard]] std::optional<Eigen::Vector2d> DirectionOfWalls(
       const IdPair& ids) const {
     const std::optional<Rigid2> pose = Register(ids, PoseByMap(ids));
@@ -256,7 +260,7 @@ class Forger {
         std::vector<Constraint> constraints =
             MakeConstraints({ids.first, ids.second, *pose}, map_.point_clouds);
         if (!constraints.empty()) return constraints;
-        // Other kinds would guess the same again.
+        // Other kinds would make the same guesses again.
         if (kind != FalseKind::kCorridor) break;
       }
     }
@@ -272,7 +276,7 @@ class Forger {
     return {};
   }
 
-  // A twin, and what its neighbours then are to each other by local SLAM.
+  // A twin, and pairs of its neighbours at the poses that follow by local SLAM.
   std::vector<Constraint> ForgeRow() {
     while (next_alias_ < aliases_.size()) {
       const PairPose& first = aliases_[next_alias_++];
@@ -347,7 +351,7 @@ class Forger {
   const DescribedMap& map_;
   const std::map<SubmapId, InsertedNodes> nodes_;
   RandomNumbers random_;
-  // Pairs that see one place by the map, and that do not.
+  // Pairs that see the same place according to the map, and pairs that do not.
   std::vector<IdPair> near_;
   std::vector<IdPair> far_;
   std::vector<PairPose> aliases_;  // best first

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Test data for the audit: a good map with wrong constraints among its own,
-// optimised as Cartographer would have, so that its poses are bent too. The
-// wrong ones are of the kinds that scan matching takes for right: they are
-// registered where they are wrong, and most of them have walls on walls.
+// Test data for the audit: a good map with added wrong constraints, optimised
+// as Cartographer would, so that its poses are distorted too. The wrong
+// constraints are of the kinds that scan matching accepts: they are registered
+// at their wrong poses, and most of them align walls with walls.
 
 #ifndef CARTOGRAPHER_SDF_EVALUATION_FALSE_CONSTRAINTS_H_
 #define CARTOGRAPHER_SDF_EVALUATION_FALSE_CONSTRAINTS_H_
@@ -22,12 +22,12 @@
 namespace cartographer_sdf {
 
 enum class FalseKind {
-  kCorridor,  // submaps that overlap, one slid 1.5 to 6 m along the walls
-  kDoor,      // the same, where along the walls it looks most alike
-  kHalfTurn,  // submaps that overlap, one turned by half a turn
-  kTwin,      // submaps of different places, as alike as any
-  kRow,       // such submaps and their neighbours, which agree with each other
-  kRandom,    // any two submaps in any pose
+  kCorridor,  // overlapping submaps, one slid 1.5 to 6 m along the walls
+  kDoor,      // the same, at the slide that looks most alike
+  kHalfTurn,  // overlapping submaps, one rotated by half a turn
+  kTwin,      // submaps of different places that look most alike
+  kRow,       // such submaps with their neighbours, mutually consistent
+  kRandom,    // any two submaps at any pose
 };
 // "corridor", ..., in the order above.
 [[nodiscard]] const char* FalseKindName(FalseKind kind);
@@ -35,7 +35,7 @@ enum class FalseKind {
 
 struct FalsificationOptions {
   std::vector<FalseKind> kinds = AllFalseKinds();
-  // Pairs of submaps of each kind; of a row of neighbours, rows.
+  // Pairs of submaps of each kind; for kRow, rows.
   int num_pairs = 3;
   uint32_t seed = 1;
 };
@@ -48,16 +48,16 @@ struct FalseConstraint {
 };
 
 struct FalsifiedMap {
-  // The map's constraints and then the wrong ones, optimised.
+  // The map's constraints followed by the wrong ones, optimised.
   PoseGraph pose_graph;
-  // Fewer than asked for where the map has no such pairs.
+  // Fewer than requested if the map has too few such pairs.
   std::vector<FalseConstraint> false_constraints;
 };
 
-// The map's poses are taken for right. Of the options of loop closing those of
-// places, matching, lifting and optimisation apply. Seconds for a hundred
-// submaps; the same for any number of threads. Fails where the file can't be
-// read.
+// Assumes that the map's poses are right. Uses the loop closing options of
+// places, matching, constraint generation and optimisation. Takes seconds for a
+// hundred submaps; independent of the number of threads. Fails if the file
+// cannot be read.
 [[nodiscard]] absl::StatusOr<FalsifiedMap> FalsifyMap(
     const LoopClosingOptions& loop_closing, const FalsificationOptions& options,
     const std::string& path, const std::set<int>& frozen_trajectories,

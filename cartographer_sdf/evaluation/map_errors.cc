@@ -29,7 +29,7 @@ double Quantile(const std::vector<double>& sorted, const double fraction) {
                              (sorted[above] - sorted[below]);
 }
 
-// Of the maps that were made from recordings without a clock, see the header.
+// For maps of recordings without a clock, see the header.
 constexpr int64_t kFirstScanTicks =
     kUnixEpochTicks + int64_t{1'000'000'000} * kTicksPerSecond;
 
@@ -61,7 +61,7 @@ std::vector<TimedPose> Trajectory(const PoseGraph& pose_graph) {
   return trajectory;
 }
 
-// Of a trajectory that is not empty; beyond its ends the nearest pose.
+// Requires a non-empty trajectory; beyond its ends, returns the nearest pose.
 Rigid2 PoseAt(const std::vector<TimedPose>& trajectory, const double time) {
   const auto after = std::upper_bound(
       trajectory.begin(), trajectory.end(), time,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Errors of a map: of its nodes against their true poses, and of pairs of nodes
-// against relations that were verified by hand.
+// against manually verified relations.
 
 #ifndef CARTOGRAPHER_SDF_EVALUATION_MAP_ERRORS_H_
 #define CARTOGRAPHER_SDF_EVALUATION_MAP_ERRORS_H_
@@ -18,9 +18,9 @@
 
 namespace cartographer_sdf {
 
-// Of absolute errors, in their unit. Quantiles are interpolated linearly
-// between the sorted values, the smallest being that of 0 and the largest that
-// of 1.
+// Statistics of absolute errors, in their unit. Quantiles are interpolated
+// linearly between the sorted values; the smallest is quantile 0, the largest
+// quantile 1.
 struct ErrorStatistics {
   int count = 0;
   double mean = 0.;
@@ -29,11 +29,11 @@ struct ErrorStatistics {
   double max = 0.;
 };
 
-// None of no errors.
+// None if there are no errors.
 [[nodiscard]] std::optional<ErrorStatistics> Summarize(
     std::vector<double> errors);
 
-// Of poses: [m] and [rad].
+// Error of a pose [m], [rad].
 struct PoseError {
   double translation = 0.;
   double rotation = 0.;
@@ -45,25 +45,25 @@ struct PoseErrorStatistics {
 [[nodiscard]] std::optional<PoseErrorStatistics> SummarizePoses(
     const std::vector<PoseError>& errors);
 
-// Where the robot was and looked (map <- tracking frame): with IMU or odometry,
-// the node frame of the pose graph is turned against it by any yaw.
+// Pose of the robot (map <- tracking frame). With IMU or odometry, the node
+// frame of the pose graph differs from the tracking frame by an arbitrary yaw.
 [[nodiscard]] Rigid2 TrackingPose(const Node& node);
 
-// Absolute errors of the tracking frame at the nodes after the rigid motion
-// that brings their positions nearest to the true ones (least squares).
+// Absolute errors of the tracking frame at the nodes after a rigid alignment of
+// their positions with the true ones (least squares).
 struct TrajectoryError {
   Rigid2 T_world_map;
   PoseErrorStatistics errors;
-  // Nodes of the map that the truth does not know.
+  // Nodes of the map without a true pose.
   int num_skipped = 0;
 };
 
-// None where the nodes in common do not determine the motion: fewer than two,
-// or all at one place.
+// None if the common nodes do not determine the alignment: fewer than two, or
+// all at one place.
 [[nodiscard]] std::optional<TrajectoryError> EvaluateTrajectory(
     const PoseGraph& pose_graph, const Truth& truth);
 
-// Where one scan was seen from another [Kuemmerle2009]: unlike poses in a world
+// Pose of one scan relative to another [Kuemmerle2009]. Unlike poses in a world
 // frame, relations do not spread an error at one place over the whole map.
 struct Relation {
   // Indices of scans; fractions are allowed.
@@ -75,15 +75,15 @@ struct Relation {
   double second_time = 0.;
 };
 
-// Lines of i, j, x, y, theta, t1, t2 [m, rad, s] and possibly more, apart by
-// white space; what follows a # is ignored.
+// Lines of i, j, x, y, theta, t1, t2 [m, rad, s] and possibly more fields,
+// separated by white space; # starts a comment.
 [[nodiscard]] absl::StatusOr<std::vector<Relation>> ReadRelations(
     const std::string& path);
 
 struct RelationErrors {
-  // None where no relation lies within the map's time.
+  // None if no relation lies within the map's time.
   std::optional<PoseErrorStatistics> all;
-  // Of those whose scans were recorded more than 30 s apart.
+  // Relations of scans recorded more than 30 s apart.
   std::optional<PoseErrorStatistics> loops;
   // Relations of scans more than 1 s before or after all nodes.
   int num_skipped = 0;

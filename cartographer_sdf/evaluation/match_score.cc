@@ -113,14 +113,15 @@ AnswerLabel MakeLabel(const PairTruth& pair, const MatchRow& match) {
   return label;
 }
 
-// `answers` by falling score.
+// `answers` are ordered by decreasing score.
 void FollowPrecisionRecallCurve(std::vector<AnswerLabel> answers,
                                 MatchScore* const score) {
   for (size_t k = 0; k < answers.size(); ++k) {
     score->num_wrong += answers[k].verdict == AnswerVerdict::kWrong;
     score->num_near += answers[k].verdict == AnswerVerdict::kNear;
     if (score->num_wrong == 0) score->threshold = answers[k].score;
-    // By rank, so that each has a point of the curve.
+    // Replaces scores by ranks, so that each answer has its own point of the
+    // curve.
     answers[k].score = -static_cast<double>(k);
   }
   const PrecisionRecallCurve curve =

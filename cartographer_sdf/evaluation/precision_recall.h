@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Precision and recall of answers over the threshold that their scores must
-// reach ([Millane2019], Sec. V-A: over the number of inliers).
+// Precision and recall of answers over the threshold on their scores
+// ([Millane2019], Sec. V-A: over the number of inliers).
 
 #ifndef CARTOGRAPHER_SDF_EVALUATION_PRECISION_RECALL_H_
 #define CARTOGRAPHER_SDF_EVALUATION_PRECISION_RECALL_H_
@@ -17,44 +17,44 @@ namespace cartographer_sdf {
 
 struct JudgedAnswer {
   double score = 0.;
-  // Right, of what there was to find; else wrong.
+  // A right answer to a positive; otherwise wrong.
   bool is_right = false;
 };
 
 struct PrecisionRecallPoint {
-  double threshold = 0.;  // answers with this score or a higher one count
+  double threshold = 0.;  // answers with at least this score count
   int num_right = 0;
   int num_wrong = 0;
-  double precision = 0.;  // of those that count
-  double recall = 0.;     // num_right of all there was to find
+  double precision = 0.;  // of the answers that count
+  double recall = 0.;     // num_right over num_positives
 };
 
 struct PrecisionRecallCurve {
-  // One for each distinct score, highest first: answers of one score come
-  // together, so that their order cannot matter. Empty where there are none.
+  // One point for each distinct score, highest first; answers with equal scores
+  // count together, so that their order does not matter. Empty if there are no
+  // answers.
   std::vector<PrecisionRecallPoint> points;
   int num_positives = 0;
 
-  // The largest recall without a wrong answer; 0 where the answers of the
-  // highest score hold a wrong one, or there are none. None where there was
-  // nothing to find.
+  // The largest recall without a wrong answer; 0 if an answer with the highest
+  // score is wrong, or there are no answers. None if there are no positives.
   [[nodiscard]] std::optional<double> RecallAtPrecision1() const;
-  // The least threshold with that recall; none where that is 0 or none.
+  // The least threshold with that recall; none if the recall is 0 or none.
   [[nodiscard]] std::optional<double> ThresholdAtPrecision1() const;
-  // The area below the curve, as a sum of steps: each gain in recall at the
-  // precision after it. None where there was nothing to find.
+  // The area under the curve, as a sum of steps: each gain in recall times the
+  // precision after it. None if there are no positives.
   [[nodiscard]] std::optional<double> AveragePrecision() const;
 };
 
-// `num_positives` is the number of what there was to find, answered or not; at
-// least that of the right answers.
+// `num_positives` counts all positives, answered or not; it is at least the
+// number of right answers.
 [[nodiscard]] PrecisionRecallCurve MakePrecisionRecallCurve(
     std::vector<JudgedAnswer> answers, int num_positives);
 
 struct NamedCurve {
   std::string name;  // without commas
   PrecisionRecallCurve curve;
-  // Of a method with a part taken away.
+  // Whether it belongs to a reduced variant of a method.
   bool is_variant = false;
 };
 

@@ -158,7 +158,7 @@ std::vector<std::vector<MatchRow>> MatchTurnedPairs(
     const ProgressCallback& on_progress) {
   const OptionalPlaces references =
       DescribeReferences(make_place, pairs, executor);
-  // By pairs, of which those without both places have no rows.
+  // Indexed by pair; pairs without both places have no rows.
   std::vector<std::vector<std::optional<MatchRow>>> found(pairs.size());
   TaskProgress progress(on_progress, pairs.size());
   executor(pairs.size(), [&](const size_t k) {

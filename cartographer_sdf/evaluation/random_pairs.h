@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The paper's protocol ([Millane2019], Sec. V-A): random pairs of submaps, one
-// of each turned by a random angle before it is described; whether the pair is
-// called a match is compared with how much of what both observed is common.
+// The paper's protocol ([Millane2019], Sec. V-A): random pairs of submaps, with
+// one submap of each pair rotated by a random angle before it is described.
+// Whether the method reports a match is compared with the overlap of the
+// observed areas.
 
 #ifndef CARTOGRAPHER_SDF_EVALUATION_RANDOM_PAIRS_H_
 #define CARTOGRAPHER_SDF_EVALUATION_RANDOM_PAIRS_H_
@@ -24,18 +25,18 @@ namespace cartographer_sdf {
 struct TurnedPair {
   SubmapId reference;
   SubmapId query;
-  // The query is turned by this about its origin before it is described, in
-  // (-pi, pi].
+  // Rotation of the query about its origin before it is described, in (-pi,
+  // pi].
   double rotation = 0.;
 };
 
-// As many of `pairs` as are wanted or there are, each at most once, in the
-// order of the ids. Depends on nothing but the arguments.
+// Draws up to `max_num_pairs` distinct pairs, in the order of the ids. Depends
+// only on the arguments.
 [[nodiscard]] std::vector<TurnedPair> DrawRandomPairs(const PairTruths& pairs,
                                                       int max_num_pairs,
                                                       int seed);
 
-// A submap turned by an angle about its origin, described; none where there is
+// Describes a submap rotated by an angle about its origin; none if there is
 // nothing to describe. Called on several threads.
 using PlaceMaker =
     std::function<std::optional<Place>(const SubmapId& id, double rotation)>;
@@ -48,23 +49,23 @@ using PlaceMaker =
     const CloudPlaceOptions& options,
     const std::map<SubmapId, SubmapCloud>& clouds);
 
-// The features whose clearance is at most that, inside of walls or outside.
+// The features whose absolute clearance is at most `max_clearance`.
 [[nodiscard]] FeatureSet FeaturesNearWalls(const FeatureSet& features,
                                            double max_clearance);
 
-// The answers to the pairs, each of the submaps as they are in the map (the
-// rotation taken back). One list for all features, then one for each of
-// `max_clearances`, by the features within that distance of walls alone; those
-// are for methods that need no more than features. Pairs without an answer are
-// absent. The result does not depend on the executor.
+// Matches the pairs and returns their answers for the submaps as they are in
+// the map (with the rotation undone). Returns one list for all features, then
+// one for each of `max_clearances` with only the features within that distance
+// of walls; the latter are for methods that need only features. Pairs without
+// an answer are absent. The result does not depend on the executor.
 [[nodiscard]] std::vector<std::vector<MatchRow>> MatchTurnedPairs(
     const MatchOptions& options, const PlaceMaker& make_place,
     const std::vector<TurnedPair>& pairs,
     const std::vector<double>& max_clearances, const Executor& executor,
     const ProgressCallback& on_progress = {});
 
-// A pair is a match where the common area is at least `min_overlap` of the
-// smaller one's. `labels` are LabelAnswers' of answers to `pairs`.
+// A pair is positive if the common area is at least `min_overlap` of the
+// smaller area. `labels` are the result of LabelAnswers for answers to `pairs`.
 [[nodiscard]] PrecisionRecallCurve JudgePairs(
     const PairTruths& truths, const std::vector<TurnedPair>& pairs,
     const std::vector<AnswerLabel>& labels, double min_overlap,

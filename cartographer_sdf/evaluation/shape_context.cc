@@ -17,7 +17,7 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr int kMaxNumShifts = 100;
-// A mean shift that moves less has arrived [m].
+// A mean shift that moves by less has converged [m].
 constexpr double kLeastShift = 1e-4;
 
 double SmallerEigenvalueFraction(const Eigen::Matrix2d& scatter) {
@@ -28,7 +28,7 @@ double SmallerEigenvalueFraction(const Eigen::Matrix2d& scatter) {
   return std::clamp(0.5 * (trace - root) / trace, 0., 0.5);
 }
 
-// Where the mean shift ends that starts at `position`.
+// Returns the mode that the mean shift from `position` converges to.
 Eigen::Vector2d FindMode(const PointRaster& raster, const SubmapCloud& points,
                          const std::vector<double>& weights,
                          const double radius, Eigen::Vector2d position) {
@@ -39,7 +39,7 @@ Eigen::Vector2d FindMode(const PointRaster& raster, const SubmapCloud& points,
       sum += weights[k] * points[k];
       sum_weights += weights[k];
     });
-    // By rounding, points on the very rim may be lost.
+    // Rounding may lose points on the very rim.
     if (!(sum_weights > 0.)) break;
     const Eigen::Vector2d mean = sum / sum_weights;
     const double length = (mean - position).norm();
@@ -49,14 +49,14 @@ Eigen::Vector2d FindMode(const PointRaster& raster, const SubmapCloud& points,
   return position;
 }
 
-// Where mean shifts end, and what began them.
+// A mode, and the points whose mean shifts converge to it.
 struct Mode {
   Eigen::Vector2d position;
   int num_points;
   double sum_curvatures;
 };
 
-// The indices of the points, the sharpest first.
+// The indices of the points, highest weight first.
 std::vector<size_t> ByFallingWeight(const std::vector<double>& weights) {
   std::vector<size_t> order(weights.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -67,7 +67,7 @@ std::vector<size_t> ByFallingWeight(const std::vector<double>& weights) {
   return order;
 }
 
-// The modes of the sharpest points are the ones that others join.
+// Modes of points with higher curvature come first, and later ones join them.
 std::vector<Mode> FindModes(const SubmapCloud& points,
                             const std::vector<double>& weights,
                             const double radius) {
@@ -90,7 +90,7 @@ std::vector<Mode> FindModes(const SubmapCloud& points,
   return modes;
 }
 
-// A middle of points this near to the keypoint has no direction [m].
+// A mean offset shorter than this has no direction [m].
 constexpr double kLeastOffset = 1e-6;
 
 std::optional<double> Orientation(const SubmapCloud& cloud,
@@ -107,7 +107,7 @@ std::optional<double> Orientation(const SubmapCloud& cloud,
   return std::atan2(sum.y(), sum.x());
 }
 
-// Bins of the direction run fastest. None where there is no point.
+// The angular index varies fastest. None if there is no point.
 std::optional<Eigen::VectorXf> Describe(const ShapeContextOptions& options,
                                         const SubmapCloud& cloud,
                                         const PointRaster& raster,
@@ -123,8 +123,9 @@ std::optional<Eigen::VectorXf> Describe(const ShapeContextOptions& options,
                   std::max(d.norm(), 1e-9 * options.radius_meters));
     const int radial =
         std::max(0, options.num_radial_bins - 1 - static_cast<int>(octaves));
-    // Split between the two bins whose centres are nearest: with few bins, a
-    // small error of the orientation would else move whole walls.
+    // Splits the weight between the two nearest bin centres: with few bins, a
+    // small error of the orientation would otherwise move whole walls to
+    // another bin.
     const double turns =
         NormalizeAngle(std::atan2(d.y(), d.x()) - orientation) / (2. * M_PI);
     const double bin = (turns + 1.) * num_angular;
@@ -159,7 +160,7 @@ std::vector<double> Curvatures(const CurvatureClusterOptions& options,
     Eigen::Matrix2d sum_squares = Eigen::Matrix2d::Zero();
     int count = 0;
     raster.ForEachNear(centre, options.scatter_radius_meters, [&](const int k) {
-      // Relative, lest far from the origin digits are lost.
+      // Relative to the point, to preserve precision far from the origin.
       const Eigen::Vector2d d = cloud[k] - centre;
       sum += d;
       sum_squares += d * d.transpose();

@@ -28,9 +28,10 @@ namespace cartographer_sdf {
 
 // Keypoints of a 2D point cloud where its surfaces bend, after [BosseZlot2009].
 // The curvature at a point is the smaller eigenvalue of the scatter of the
-// points around it, as a fraction of both: 0 on straight walls, 0.5 where they
-// spread alike in all directions. Points of high curvature are clustered by
-// mean shift, weighed by curvature; the modes are the keypoints. Heuristic.
+// points around it, as a fraction of the sum of both: 0 on straight walls, 0.5
+// where the points spread equally in all directions. Points of high curvature
+// are clustered by mean shift, weighted by curvature; the modes are the
+// keypoints. Heuristic.
 struct CurvatureClusterOptions {
   // Points within this distance make up the scatter [m]. Larger: corners of
   // furniture blur, corners of rooms stand out.
@@ -51,7 +52,7 @@ struct CurvatureCluster {
   double curvature;          // mean of its points
 };
 
-// Of each point of the cloud; 0 where there are too few neighbours.
+// The curvature at each point of the cloud; 0 if it has too few neighbours.
 [[nodiscard]] std::vector<double> Curvatures(
     const CurvatureClusterOptions& options, const SubmapCloud& cloud);
 
@@ -64,7 +65,7 @@ struct ShapeContextOptions {
   // Table I. Each bin reaches twice as far as the one inside it.
   int num_radial_bins = 3;
   int num_angular_bins = 6;  // Table I
-  // Points within this distance fix the direction [m].
+  // Points within this distance determine the orientation [m].
   double orientation_radius_meters = 1.;
 };
 [[nodiscard]] std::string Validate(const ShapeContextOptions& options);
@@ -76,14 +77,14 @@ struct CloudPlaceOptions {
 };
 [[nodiscard]] std::string Validate(const CloudPlaceOptions& options);
 
-// Features of a cloud in its frame, all of one kind and at no distance to
-// walls, in the order of the clusters. A keypoint whose surroundings have no
-// direction, or no points, yields no feature.
+// Features of a cloud in its frame, all of one kind and with clearance 0, in
+// the order of the clusters. A keypoint whose surroundings have no orientation,
+// or no points, yields no feature.
 [[nodiscard]] FeatureSet DescribeByShapeContexts(
     const CloudPlaceOptions& options, const SubmapCloud& cloud);
 
-// Of a whole map; places have no surface, so that only method kPaper can match
-// them.
+// Describes a whole map. Its places have no surface, so only method kPaper can
+// match them.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapByShapeContexts(
     const CloudPlaceOptions& options, const std::string& path,
     const Executor& executor, const ProgressCallback& on_progress = {});

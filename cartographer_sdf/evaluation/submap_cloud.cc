@@ -13,10 +13,10 @@
 namespace cartographer_sdf {
 namespace {
 
-// Beyond it, no raster can tell points apart [m].
+// Beyond it, a raster cannot distinguish points [m].
 constexpr double kMaxPointCoordinate = 1e6;
 
-// The first and the last, and others evenly between.
+// The first and the last, and others evenly spaced between them.
 InsertedNodes Thin(const InsertedNodes& nodes, const int max_size) {
   const std::vector<InsertedNodes::value_type> all(nodes.begin(), nodes.end());
   const size_t size = static_cast<size_t>(max_size);

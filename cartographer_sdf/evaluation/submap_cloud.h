@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Submaps as point clouds, which the comparison method needs ([Millane2019],
-// Sec. V-A): back-projected scans, aggregated by the optimised trajectory.
+// Submaps as point clouds, for the baseline method ([Millane2019], Sec. V-A):
+// back-projected scans, aggregated with the optimised trajectory.
 
 #ifndef CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_
 #define CARTOGRAPHER_SDF_EVALUATION_SUBMAP_CLOUD_H_
@@ -21,18 +21,17 @@
 namespace cartographer_sdf {
 
 struct SubmapCloudOptions {
-  // Scans that are taken of each submap, evenly over its time ([Millane2019]:
-  // about 30).
+  // Scans used per submap, evenly spaced ([Millane2019]: about 30).
   int max_num_scans = 30;
-  // Points in one square of this side become their mean [m], so that what was
-  // seen from near, or by many scans, does not weigh more.
+  // Points in one square of this side are replaced by their mean [m], so that
+  // surfaces seen from close by or in many scans do not weigh more.
   double voxel_size_meters = 0.05;
 };
 [[nodiscard]] std::string Validate(const SubmapCloudOptions& options);
 
 using SubmapCloud = std::vector<Eigen::Vector2d>;  // submap frame [m]
 
-// A square of a raster with sides of that length [m].
+// A square of a raster with the given side [m].
 using Square = std::pair<int64_t, int64_t>;
 [[nodiscard]] Square SquareAt(const Eigen::Vector2d& point, double side);
 
@@ -40,15 +39,15 @@ using Square = std::pair<int64_t, int64_t>;
 [[nodiscard]] SubmapCloud DownsampleCloud(const SubmapCloud& cloud,
                                           double voxel_size);
 
-// A cloud sorted into squares, to find points around a place. Holds a reference
-// to the points.
+// A cloud sorted into squares, for radius search. Holds a reference to the
+// points.
 class PointRaster {
  public:
-  // `radius` > 0 is the largest distance that will be asked for.
+  // `radius` > 0 is the largest search radius.
   PointRaster(const SubmapCloud& points, double radius);
 
   // Calls `function(index)` for each point within the radius of `centre`, in an
-  // order that depends on the points and the centre alone.
+  // order that depends only on the points and the centre.
   template <typename Function>
   void ForEachNear(const Eigen::Vector2d& centre, const double radius,
                    const Function& function) const {
@@ -72,9 +71,9 @@ class PointRaster {
   std::map<Square, std::vector<int>> squares_;
 };
 
-// Of each submap of the pose graph that scans were inserted into. Nodes without
-// a point cloud are passed over; clouds in the file are what the host matched:
-// undistorted, and gravity-aligned. Fails as ReadPointClouds does.
+// Returns a cloud for each submap of the pose graph that scans were inserted
+// into. Skips nodes without a point cloud. The file holds clouds as the host
+// matched them: undistorted and gravity-aligned. Fails as ReadPointClouds does.
 [[nodiscard]] absl::StatusOr<std::map<SubmapId, SubmapCloud>> ReadSubmapClouds(
     const SubmapCloudOptions& options, const std::string& path,
     const PoseGraph& pose_graph, const ProgressCallback& on_progress = {});

@@ -20,11 +20,11 @@ constexpr Color kKeptColor{0.2, 0.45, 0.7, 0.35};
 constexpr Color kDoubtfulColor{0.84, 0.15, 0.16, 0.85};
 constexpr size_t kMaxNamedConstraints = 6;
 
-// A group and what became of its constraints.
+// A group and the outcomes of its constraints.
 struct GroupOutcome {
   const AuditedGroup* group = nullptr;
   std::vector<const AuditedConstraint*> constraints;
-  // The first doubtful verdict, or the first one.
+  // The first doubtful verdict, or else the first verdict.
   AuditVerdict verdict = AuditVerdict::kConfirmed;
   int num_doubtful = 0;
 };
@@ -58,7 +58,7 @@ std::string VerdictText(const GroupOutcome& outcome) {
     case AuditVerdict::kConfirmed:
       return "looks right";
     case AuditVerdict::kAgreesWithMap:
-      return "not certain by itself, but where the map made without it has it";
+      return "not certain by itself, but the map made without it agrees";
     case AuditVerdict::kUnchecked:
       return "could not be checked";
     case AuditVerdict::kContradicted:
@@ -66,15 +66,14 @@ std::string VerdictText(const GroupOutcome& outcome) {
     case AuditVerdict::kAmbiguous:
       return "another pose of the two submaps is as good";
     case AuditVerdict::kUnlikely:
-      return outcome.group->claim.is_held
-                 ? "too little agrees"
-                 : "the walls do not hold it where it is";
+      return outcome.group->claim.is_held ? "too little agrees"
+                                          : "the walls do not support its pose";
     case AuditVerdict::kOutvoted:
       return "constraints with more weight contradict it";
     case AuditVerdict::kUnsupported:
       return "no other constraint supports it, and it is not certain alone";
     case AuditVerdict::kContradictedByMap:
-      return "the map made of the others has it elsewhere";
+      return "the map made of the others contradicts it";
   }
   return "";
 }
@@ -104,10 +103,10 @@ std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
                          " more")
           : "";
   return absl::StrFormat(
-      "%s; margin %.1f to the next pose; cycles for %.1f, against %.1f; error "
-      "%.2f m in the map as it was, %.2f m and %.1f deg in the one made "
-      "without doubtful ones; %d of %d constraints (submap)-(node) doubtful: "
-      "%s%s",
+      "%s; margin %.1f to the next pose; support %.1f and contradiction %.1f "
+      "from cycles; error %.2f m in the original map, %.2f m and %.1f deg in "
+      "the map made without doubtful constraints; %d of %d constraints "
+      "(submap)-(node) doubtful: %s%s",
       VerdictText(outcome), group.claim.margin, group.cycles.support,
       group.cycles.contradiction, before, after.translation,
       after.rotation * 180. / M_PI, outcome.num_doubtful,
@@ -151,7 +150,7 @@ std::vector<HistogramPlot> MakeHistograms(
        {"score (log-odds of being right)", {{-20., 20.}}},
        {{"kept", kept_scores}, {"doubtful", doubtful_scores}}},
       {"Walls in the other's free space",
-       {"% of the wall points, the worse direction", {{0., 30.}}},
+       {"% of the wall points, in the worse direction", {{0., 30.}}},
        {{"kept", kept_contradictions}, {"doubtful", doubtful_contradictions}}}};
 }
 
@@ -169,15 +168,16 @@ ReportedClosure ReportedGroup(const Audit& audit, const GroupOutcome& outcome) {
   return reported;
 }
 
-// All but the pictures: the groups that are doubtful, or that only the map
-// saved.
+// The content without pictures: the groups that are doubtful, or that are kept
+// only because the map agrees.
 ReportContent MakeText(const std::string& input, const Audit& audit,
                        const std::vector<GroupOutcome>& outcomes) {
   ReportContent content;
   content.title = "Audit of " + FileName(input);
   content.subtitle =
-      "Every inter-submap constraint held against what its submaps look like, "
-      "the others, and the map that the undoubted ones make.";
+      "Every inter-submap constraint, checked against the shapes of its "
+      "submaps, the other constraints, and the map made without doubtful "
+      "constraints.";
   content.summary = MakeSummary(audit);
   AddOptimization(audit.optimization, audit.optimizations, &content);
   content.closures_heading = "Doubtful constraints";
@@ -227,7 +227,7 @@ absl::Status WriteAuditReport(const ReportRequest& request,
   ReportContent content = MakeText(input, audit, outcomes);
   content.options = request.options_text;
   std::vector<MapPicture> maps = {
-      {"As it was; red: doubtful constraints, blue: the others", &audit.state,
+      {"Before; red: doubtful constraints, blue: the others", &audit.state,
        &audit.state.pose_graph, /*shows_links=*/true}};
   for (const GroupOutcome& outcome : outcomes) {
     if (outcome.num_doubtful > 0) continue;
@@ -236,8 +236,8 @@ absl::Status WriteAuditReport(const ReportRequest& request,
                                         kKeptColor});
   }
   if (audit.num_doubtful > 0) {
-    maps.push_back(
-        {"Without the doubtful ones", &audit.state, &audit.pose_graph});
+    maps.push_back({"After, without the doubtful constraints", &audit.state,
+                    &audit.pose_graph});
   }
   const absl::Status status =
       DrawPictures(maps, read_submaps, request.options, &content);

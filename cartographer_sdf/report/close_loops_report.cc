@@ -23,7 +23,7 @@ std::string ReasonOf(const Closure& closure) {
     case ClosureStatus::kUnsupported:
       return "no other closure supports it, and it is not certain alone";
     case ClosureStatus::kScansDisagree:
-      return "single scans do not fit where it puts them";
+      return "single scans do not fit at its pose";
     case ClosureStatus::kOutlier:
       return "the optimised map contradicts it, by " +
              FormatError(closure.graph_error);
@@ -69,7 +69,7 @@ std::vector<HistogramPlot> MakeHistograms(const LoopClosingResult& result) {
            {{"after", ResidualsOf(result, result.closed.pose_graph)}}},
           {"Scores of the closures",
            {"score (log-odds of being right)", {}},
-           {{"in the graph", scores}, {"not", refused_scores}}}};
+           {{"in the graph", scores}, {"refused", refused_scores}}}};
 }
 
 std::vector<std::pair<std::string, std::string>> MakeSummary(
@@ -94,23 +94,23 @@ std::vector<std::pair<std::string, std::string>> MakeSummary(
                     result.state.pose_graph.constraints.size())}};
 }
 
-// All but the pictures.
+// The content without pictures.
 ReportContent MakeText(const std::string& input,
                        const LoopClosingResult& result) {
   ReportContent content;
   content.title = "Loop closures of " + FileName(input);
-  content.subtitle = "Found by the shape of free space, without a pose prior.";
+  content.subtitle =
+      "Found from the shape of free space, without a pose prior.";
   if (Count(result, ClosureStatus::kInGraph) == 0) {
     content.warnings.push_back(
-        "No loop closure was found; the map is as it was.");
+        "No loop closure was found; the map is unchanged.");
   }
   if (const int num_outliers = Count(result, ClosureStatus::kOutlier);
       num_outliers > 0) {
     content.warnings.push_back(absl::StrCat(
         num_outliers,
         " closures were rejected as outliers because the optimised map "
-        "contradicts them: "
-        "there are places that look alike. Look at the map where they were."));
+        "contradicts them: some places look alike. Check the map there."));
   }
   AddTornSubmaps(result.closed.torn_submaps, &content);
   content.summary = MakeSummary(result);
@@ -140,8 +140,8 @@ absl::Status WriteCloseLoopsReport(const ReportRequest& request,
   content.options = request.options_text;
   const absl::Status status = DrawPictures(
       {{"Before", &result.state, &result.state.pose_graph},
-       {"After, with the closures: red in the graph, purple not", &result.state,
-        &result.closed.pose_graph, /*shows_links=*/true}},
+       {"After, with the closures: red in the graph, purple refused",
+        &result.state, &result.closed.pose_graph, /*shows_links=*/true}},
       read_submaps, request.options, &content);
   if (!status.ok()) return status;
   return WriteReport(request.directory, content);

@@ -25,10 +25,10 @@ constexpr Color kDark{0.1, 0.1, 0.1};
 constexpr Color kReference{0.05, 0.25, 0.75};
 constexpr Color kQuery{0.8, 0.08, 0.08};
 constexpr double kContourIntervalMeters = 0.5;
-// The view of the surface: turned, and tilted towards the viewer.
+// The view of the surface: rotated, and tilted towards the viewer.
 constexpr double kAzimuth = 30. * M_PI / 180.;
 constexpr double kElevation = 38. * M_PI / 180.;
-// Heights are drawn this much larger than lengths, so that rooms stand out.
+// Heights are exaggerated by this factor, so that rooms stand out.
 constexpr double kHeightScale = 1.6;
 // The distance at which the colours saturate [m].
 constexpr double kFullColorMeters = 3.;
@@ -80,7 +80,7 @@ std::optional<double> ObservedDistance(const DistanceField& field,
   return static_cast<double>(field.distance(cell.x(), cell.y()));
 }
 
-// As ObservedDistance, but bilinear between the centres of cells.
+// As ObservedDistance, but interpolated bilinearly between cell centres.
 std::optional<double> SmoothDistance(const DistanceField& field,
                                      const Eigen::Vector2d& p_grid) {
   const std::optional<double> distance = ObservedDistance(field, p_grid);
@@ -89,8 +89,7 @@ std::optional<double> SmoothDistance(const DistanceField& field,
   return sample ? sample->distance : *distance;
 }
 
-// How strongly a contour between two neighbouring pixels is drawn; 0 where
-// there is none.
+// Strength of the contour between two neighbouring pixels; 0 if there is none.
 double ContourStrength(const double here, const double next) {
   const double level = std::floor(here / kContourIntervalMeters);
   const double other = std::floor(next / kContourIntervalMeters);
@@ -99,8 +98,8 @@ double ContourStrength(const double here, const double next) {
   return is_wall ? 1. : 0.35;
 }
 
-// Calls back with the centre of each observed cell in the grid frame and its
-// distance.
+// Calls back with the centre of each observed cell in the grid frame and with
+// its distance.
 void ForEachObserved(
     const DistanceField& field,
     const std::function<void(const Eigen::Vector2d&, double)>& on_cell) {
@@ -113,8 +112,8 @@ void ForEachObserved(
   }
 }
 
-// The box that holds all but one in a hundred of the observed cells on each
-// side, in the grid frame [m]: single beams through doors reach far.
+// The box without the outermost hundredth of the observed cells on each side,
+// in the grid frame [m]: single beams through doors reach far.
 Eigen::AlignedBox2d ObservedBounds(const DistanceField& field) {
   std::vector<double> xs, ys;
   ForEachObserved(field, [&](const Eigen::Vector2d& p_grid, double) {
@@ -143,7 +142,7 @@ struct ObliqueView {
   [[nodiscard]] Eigen::Vector2d ToGrid(const Eigen::Vector2d& turned) const {
     return Eigen::Rotation2Dd(kAzimuth) * turned + plane.center();
   }
-  // Where a point of the surface is seen, to the right, and up [m].
+  // Projected position of a surface point, to the right and up [m].
   [[nodiscard]] static Eigen::Vector2d Seen(const Eigen::Vector2d& turned,
                                             const double distance) {
     return {turned.x(), turned.y() * std::sin(kElevation) +
@@ -151,7 +150,7 @@ struct ObliqueView {
   }
 };
 
-// How bright the surface is where it leans: lit from the upper left.
+// Shading of the surface, lit from the upper left.
 double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
   const std::optional<FieldSample> sample = SampleField(field, p_grid);
   if (!sample) return 1.;
@@ -163,8 +162,8 @@ double Brightness(const DistanceField& field, const Eigen::Vector2d& p_grid) {
   return 0.6 + 0.4 * std::max(0., normal.dot(light));
 }
 
-// Draws one column of pixels from front to back: what is lower than what was
-// drawn before it is hidden behind it. `depths` are those of the plane.
+// Draws one column of pixels from front to back: points below the horizon drawn
+// so far are hidden. `depths` are those of the plane.
 void DrawSurfaceColumn(const DistanceField& field, const ObliqueView& view,
                        const std::pair<double, double>& depths, const int x,
                        Sheet* const sheet) {
@@ -183,8 +182,8 @@ void DrawSurfaceColumn(const DistanceField& field, const ObliqueView& view,
     const int row = static_cast<int>(std::floor(
         sheet->frame.ToPixels(ObliqueView::Seen({right, depth}, *distance))
             .y()));
-    // What rises is drawn down to the horizon, but is no cliff where an
-    // observed part begins.
+    // A rising surface is drawn down to the horizon, but without a cliff where
+    // an observed part begins.
     const int lowest = follows_observed ? horizon : std::min(horizon, row + 1);
     follows_observed = true;
     if (row >= horizon) continue;
@@ -209,8 +208,8 @@ struct FeatureWindow {
   }
 };
 
-// The gradients at every third cell in the window, as long as they weigh, with
-// a dot at the foot. `sigma` is that of the weights [m].
+// Draws the gradients at every third cell in the window, with their weight as
+// length and a dot at the foot. `sigma` is that of the weights [m].
 void DrawWeighedGradients(const CellGeometry& geometry,
                           const Eigen::ArrayXXf& smoothed,
                           const FeatureWindow& window, const double sigma,

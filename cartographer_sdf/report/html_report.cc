@@ -17,10 +17,10 @@
 namespace cartographer_sdf {
 namespace {
 
-// Of the PNGs of closures together; base64 takes a third more.
+// Total size of the PNGs of closures; base64 adds a third.
 constexpr size_t kMaxClosurePictureBytes = size_t{20} << 20;
 
-// A picture is enlarged by a hidden checkbox before it, without a script.
+// A hidden checkbox before each picture enlarges it, without a script.
 constexpr char kStyle[] = R"css(
 :root { color-scheme: light dark; --ink: #1b1f24; --paper: #ffffff;
   --soft: #f3f5f8; --line: #d4d9e0; --faint: #5d6673; --accent: #0072b2;
@@ -108,7 +108,7 @@ std::string RenderSummary(const ReportContent& content) {
   return html.empty() ? html : Section("Summary", html);
 }
 
-// Side by side; nothing where there are none.
+// Side by side; empty if there are none.
 std::string Columns(const std::string& heading,
                     const std::vector<std::string>& columns) {
   if (columns.empty()) return "";

@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kMaxNumPlacements = 10;
 
-// Flat: the members of the pose are among the others.
+// Flat: the members of the pose are not nested.
 Json MatchJson(const Match& match) {
   const PairPose& pair = match.pair;
   Json json = {{"reference_trajectory", pair.reference.trajectory},
@@ -28,7 +28,7 @@ Json MatchJson(const Match& match) {
   return json;
 }
 
-// The matches that vote for the answer; none where there is no answer.
+// The matches that vote for the answer; none if there is no answer.
 Json VotesJson(const Localization& result) {
   Json votes = Json::array();
   if (!result.T_map_query) return votes;
@@ -38,7 +38,7 @@ Json VotesJson(const Localization& result) {
   return votes;
 }
 
-// Where else it might be; the best few.
+// The best few other placements.
 Json PlacementsJson(const std::vector<Placement>& placements) {
   Json json = Json::array();
   for (size_t k = 0; k < std::min(placements.size(), kMaxNumPlacements); ++k) {
@@ -51,7 +51,7 @@ Json PlacementsJson(const std::vector<Placement>& placements) {
   return json;
 }
 
-// Stages that ran twice count once, with the sum.
+// Stages that ran several times have one entry, with the sum.
 Json MillisecondsJson(
     const std::vector<std::pair<std::string, double>>& stage_seconds) {
   Json json = Json::object();

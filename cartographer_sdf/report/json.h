@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Results as JSON [RFC 8259], for other programs. Metres and radians; null
-// where there is no value. Not installed: programs that link the library get
-// the results themselves.
+// where there is no value. Not installed: programs that link the library use
+// the result structs directly.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_JSON_H_
 #define CARTOGRAPHER_SDF_REPORT_JSON_H_
@@ -43,10 +43,10 @@ template <typename T>
   }
 }
 
-// The R.json of relocalize.
+// The file R.json of relocalize.
 [[nodiscard]] Json ToJson(const Localization& result);
 
-// What became of each session, and of each pair.
+// The outcome of each session, and of each pair of sessions.
 [[nodiscard]] Json ToJson(const MergingResult& result);
 
 }  // namespace cartographer_sdf

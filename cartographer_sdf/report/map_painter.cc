@@ -18,19 +18,19 @@ namespace {
 constexpr Color kUnobserved{0.5, 0.5, 0.5};
 constexpr Color kInk{0.15, 0.15, 0.2};
 // Along each axis: with pixels at least as large as a cell, samples are at most
-// half a pixel apart, and no pixel inside of a turned grid stays empty.
+// half a pixel apart, and no pixel inside a rotated grid stays empty.
 constexpr int kSamplesPerCell = 2;
-// Takes what was missed a few times more than hit to white: the host's default
-// miss probability is 0.49, which ten misses bring to 0.4, fifty to 0.12.
+// Draws cells with a few more misses than hits white: with the host's default
+// miss probability of 0.49, ten misses yield 0.4, fifty 0.12.
 constexpr double kContrast = 3.;
-// Where a pixel is much larger than a cell, a wall is but a fraction of it.
+// If a pixel is much larger than a cell, a wall covers only a fraction of it.
 constexpr double kMaxWallGain = 4.;
 constexpr double kMarginMeters = 0.5;
 constexpr Color kConflict{0.9, 0.1, 0.1};
-// Beyond it, a pixel is a wall, or free, for sure.
+// Beyond it, a pixel is certainly wall or free.
 constexpr double kSureExcess = 0.15;
 
-// More than a quarter of the way around the earth is no map.
+// No map extends over more than a quarter of the earth's circumference.
 constexpr double kMaxDrawnCoordinate = 1e7;
 
 bool IsDrawable(const Eigen::Vector2d& position) {
@@ -41,7 +41,7 @@ bool IsDrawable(const Rigid2& pose) {
   return IsDrawable(pose.translation()) && std::isfinite(pose.rotation());
 }
 
-// Large pictures are shown shrunk to fit, and must be readable then.
+// Large pictures are shrunk to fit, and must remain readable.
 double StrokeScale(const Picture& picture) {
   return std::max(1., std::max(picture.width(), picture.height()) / 700.);
 }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // One picture of a whole map from its submaps: free space white, walls dark,
-// unknown mid-grey, as the host's. Where submaps overlap, their mean is shown;
-// walls that do not fall together look doubled and pale.
+// unknown mid-grey, as in the host's pictures. Where submaps overlap, their
+// mean is shown; misaligned walls look doubled and pale.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_MAP_PAINTER_H_
 #define CARTOGRAPHER_SDF_REPORT_MAP_PAINTER_H_
@@ -25,50 +25,51 @@ struct PlacedGrid {
 
 class MapPainter {
  public:
-  // The picture shows all grids; its longer side has at most `max_pixels`
-  // pixels, none of which is smaller than a cell of the finest grid. Grids
-  // without cells or with a pose off this world (10 000 km, NaN) are not shown.
+  // The picture shows all grids. Its longer side has at most `max_pixels`
+  // pixels, and no pixel is smaller than a cell of the finest grid. Grids
+  // without cells or with an absurd pose (beyond 10 000 km, NaN) are not shown.
   MapPainter(const std::vector<PlacedGrid>& grids, int max_pixels);
 
-  // Memory is that of the picture, not of the submaps. What lies outside of the
-  // picture is dropped.
+  // Uses memory for the picture only, not for the submaps. Drops cells outside
+  // the picture.
   void AddSubmap(const OccupancyGrid& grid, const Rigid2& T_map_submap);
 
   [[nodiscard]] const PixelFrame& frame() const { return frame_; }
-  // Of what was added so far; of nothing.
+  // Pictures of the submaps added so far, and of an empty map.
   [[nodiscard]] Picture Paint() const;
   [[nodiscard]] Picture UnobservedPicture() const;
-  // How far the mean probability of a pixel is above (a wall) or below (free)
-  // 1/2; none where nothing is known.
+  // Mean probability of a pixel minus 1/2, with walls weighted more where
+  // pixels are larger than cells: positive for walls, negative for free space;
+  // none where nothing is known.
   [[nodiscard]] std::optional<double> ExcessAt(int x, int y) const;
 
  private:
   PixelFrame frame_;
-  // Per pixel, of the samples of known cells: their number, and the sum of how
-  // far their probability is above or below 1/2.
+  // Per pixel, over the samples of known cells: their number, and the sums of
+  // their probabilities' excess above and deficit below 1/2.
   Eigen::ArrayXXf num_samples_;
   Eigen::ArrayXXf occupied_;
   Eigen::ArrayXXf free_;
   double finest_resolution_ = 0.;
 };
 
-// Several maps in one picture, painted by painters of the same grids, each with
-// submaps of its own: the walls of each in the colour of its place in the list
-// (CategoryColor), what is free in any of them white, and red where a wall of
-// one stands in the free space of another.
+// Several maps in one picture. The painters are made of the same grids, and
+// each has the submaps of one map. Walls have the colour of their map's index
+// (CategoryColor), free space of any map is white, and walls of one map in the
+// free space of another are red.
 [[nodiscard]] Picture PaintOverlaid(const std::vector<MapPainter>& maps);
 
-// To be drawn upon a map's picture. Positions are in the frame of `frame` [m];
-// those off this world are left out.
+// These draw on a map's picture. Positions are in the frame of `frame` [m];
+// absurd ones are left out.
 void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
                     const PixelFrame& frame, const Color& color,
                     Picture* picture);
 // A dot at both ends.
 void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
               const PixelFrame& frame, const Color& color, Picture* picture);
-// Fine lines every so many metres, with their coordinates at the border.
+// Fine lines at round coordinates [m], which are written at the border.
 void DrawMetricGrid(const PixelFrame& frame, Picture* picture);
-// At the lower left, of a round number of metres.
+// A scale bar at the lower left, with a round length [m].
 void DrawScaleBar(const PixelFrame& frame, Picture* picture);
 
 }  // namespace cartographer_sdf

@@ -24,7 +24,7 @@ using Rows = std::vector<std::vector<std::string>>;
 constexpr int64_t kSecondsFromYearOneTo1970 = 62135596800;
 constexpr int64_t kSecondsFromYearOneTo10000 = 315537897600;
 
-// Times of hostile files can be anything.
+// Hostile files can have any times.
 double SecondsBetween(const int64_t begin, const int64_t end) {
   return (static_cast<double>(end) - static_cast<double>(begin)) /
          static_cast<double>(kTicksPerSecond);
@@ -56,7 +56,7 @@ std::string DescribeConstraints(const MapState& map) {
       num_inter, num_between_trajectories);
 }
 
-// Lines about all submaps and their grids, by what they are about.
+// Lines about all submaps and their grids, by topic.
 Rows DescribeSubmaps(const MapState& map) {
   int num_finished = 0, num_tsdf = 0, num_probability = 0;
   double area = 0.;

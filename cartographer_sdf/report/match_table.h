@@ -15,8 +15,8 @@
 
 namespace cartographer_sdf {
 
-// One line of the table that `match` and `close_loops` write: the best pose
-// hypothesis for a pair of submaps, and why it is believed or not.
+// One row of the table that `match` and `close_loops` write: the best pose
+// hypothesis for a pair of submaps, and the evidence for it.
 struct MatchRow {
   SubmapId reference;
   SubmapId query;
@@ -42,7 +42,7 @@ struct MatchRow {
 [[nodiscard]] absl::StatusOr<std::vector<MatchRow>> ReadMatches(
     const std::string& path);
 
-// To six decimals.
+// Numbers have six decimals.
 [[nodiscard]] absl::Status WriteMatches(const std::string& path,
                                         const std::vector<MatchRow>& matches);
 

@@ -17,7 +17,7 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr int kMaxPictureSide = 16384;
-// Corridors of maps reach hundreds of metres; more is no pair of submaps.
+// Corridors of maps reach hundreds of metres; no pair of submaps exceeds this.
 constexpr double kMaxExtentMeters = 2000.;
 
 double Quantized(const double value) {
@@ -62,7 +62,7 @@ double RoundStep(const double step) {
   CHECK(std::isfinite(step) && step > 0.) << step;
   const double magnitude = std::pow(10., std::floor(std::log10(step)));
   for (const double factor : {1., 2., 5.}) {
-    // Forgives the rounding of the logarithm.
+    // Tolerates the rounding of the logarithm.
     if (factor * magnitude >= step * (1. - 1e-9)) return factor * magnitude;
   }
   return 10. * magnitude;
@@ -75,7 +75,7 @@ Picture::Picture(const int width, const int height, const Color& background)
   cairo_surface_t* const surface =
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, height);
   context_.reset(cairo_create(surface));
-  cairo_surface_destroy(surface);  // the context has it
+  cairo_surface_destroy(surface);  // the context holds a reference
   CHECK_EQ(cairo_status(context_.get()), CAIRO_STATUS_SUCCESS);
   SetColor(context_.get(), background);
   cairo_paint(context_.get());

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A picture in memory, to be drawn upon and written as PNG. Pixel (0, 0) is at
-// the top left; the centre of pixel (i, j) lies at (i + 0.5, j + 0.5).
+// A picture in memory that can be drawn on and encoded as PNG. Pixel (0, 0) is
+// at the top left; the centre of pixel (i, j) lies at (i + 0.5, j + 0.5).
 
 #ifndef CARTOGRAPHER_SDF_REPORT_PICTURE_H_
 #define CARTOGRAPHER_SDF_REPORT_PICTURE_H_
@@ -31,18 +31,19 @@ constexpr Color kBlack{0., 0., 0.};
 
 [[nodiscard]] Color Mix(const Color& a, const Color& b, double fraction_of_b);
 
-// Well distinguishable colours, also by the colour-blind; they repeat.
+// Colours that are easy to distinguish, also with colour blindness; they
+// repeat.
 [[nodiscard]] Color CategoryColor(int category);
 
-// For ticks and scale bars: the least 1, 2 or 5 times a power of ten that is
-// not less than `step` > 0.
+// For ticks and scale bars: the smallest 1, 2 or 5 times a power of ten that is
+// at least `step` > 0.
 [[nodiscard]] double RoundStep(double step);
 
-// Where the points of a frame lie in a picture: its x axis to the right, its y
-// axis up.
+// Maps points of a frame to a picture, with the frame's x axis to the right and
+// its y axis up.
 struct PixelFrame {
   double pixels_per_meter = 1.;
-  // Of the top left corner of the picture [m].
+  // The picture's top left corner in the frame [m].
   Eigen::Vector2d top_left = Eigen::Vector2d::Zero();
 
   [[nodiscard]] Eigen::Vector2d ToPixels(const Eigen::Vector2d& p) const {
@@ -59,15 +60,15 @@ class Picture {
  public:
   enum class Anchor { kLeft, kCentre };
 
-  // Sizes are at least 1 and at most 16384.
+  // Both sizes must be from 1 to 16384.
   Picture(int width, int height, const Color& background);
 
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
 
-  // Outside of the picture nothing happens.
+  // Ignores positions outside the picture.
   void BlendPixel(int x, int y, const Color& color);
-  // Blends each pixel with its colour; those without one stay.
+  // Blends each pixel with its colour; leaves pixels without one unchanged.
   void BlendPixels(
       const std::function<std::optional<Color>(int x, int y)>& color_of);
 
@@ -78,8 +79,8 @@ class Picture {
                      const Eigen::Vector2d& size, const Color& fill);
   void DrawCircle(const Eigen::Vector2d& centre, double radius,
                   const Color& fill, const Color& outline);
-  // `position` is on the baseline; with a halo that makes it readable on
-  // anything.
+  // `position` is on the baseline. A halo keeps the text readable on any
+  // background.
   void DrawText(const Eigen::Vector2d& position, const std::string& text,
                 double size, const Color& color, Anchor anchor);
 
@@ -95,7 +96,7 @@ struct Sheet {
   PixelFrame frame;
 };
 
-// Of `bounds` [m], with the longer side at `max_pixels`.
+// A sheet of `bounds` [m], whose longer side has `max_pixels` pixels.
 [[nodiscard]] Sheet MakeSheet(const Eigen::AlignedBox2d& bounds, int max_pixels,
                               const Color& background);
 

@@ -13,13 +13,13 @@ struct ReportOptions {
   int map_picture_pixels = 1600;
   // Longer side of the picture of a matched pair [pixels].
   int closure_picture_pixels = 360;
-  // Closures beyond it are listed without a picture.
+  // Further closures are listed without a picture.
   int max_closure_pictures = 60;
 };
 
-// A sentence that begins with the offending option, or nothing.
+// Returns a sentence that begins with the offending option, or nothing.
 [[nodiscard]] inline std::string Validate(const ReportOptions& options) {
-  // Above it, pictures of 32 bit per pixel exceed what browsers show well.
+  // Browsers do not show larger pictures of 32 bit per pixel well.
   constexpr int kMaxPixels = 8192;
   const auto is_size = [](const int pixels) {
     return pixels >= 16 && pixels <= kMaxPixels;
@@ -33,7 +33,7 @@ struct ReportOptions {
              : "";
 }
 
-// What every report is told beside its content.
+// What every report needs besides its content.
 struct ReportRequest {
   std::string directory;  // index.html goes there
   ReportOptions options;

@@ -40,8 +40,8 @@ void AddSubmap(const MapPicture& map, const SubmapId& id,
   }
 }
 
-// Where the robot was in the middle of each submap, in the map frame: the mean
-// of its nodes; the submap's origin where it has none.
+// Mean position of each submap's nodes in the map frame; the submap's origin if
+// it has none.
 std::map<SubmapId, Eigen::Vector2d> SubmapCentres(const PoseGraph& pose_graph) {
   std::map<SubmapId, std::pair<Eigen::Vector2d, int>> sums;
   for (const Constraint& constraint : pose_graph.constraints) {
@@ -98,7 +98,7 @@ Picture DrawMap(const MapPicture& map, const std::vector<MapPainter>& painters,
   return picture;
 }
 
-// Empty where either submap has no grid.
+// Empty if either submap has no grid.
 std::string DrawPair(const Match& match,
                      const std::map<SubmapId, OccupancyGrid>& grids,
                      const int max_pixels) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The pages of --report, the table of audit, and what the pages about maps
-// share: pictures, and lines of the summary.
+// The pages of --report, the table of audit, and the parts that pages about
+// maps share: pictures and lines of the summary.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_REPORTS_H_
 #define CARTOGRAPHER_SDF_REPORT_REPORTS_H_
@@ -26,25 +26,25 @@
 
 namespace cartographer_sdf {
 
-// A line between two submaps, from where the robot was to where it was.
+// A line between the robot's positions in two submaps.
 struct SubmapLink {
   SubmapId from;
   SubmapId to;
   Color color;
 };
 
-// A whole map with the paths that were driven: the submaps of `state` where
-// `pose_graph` has them, which both outlive it.
+// A whole map with the driven paths: the submaps of `state` at their poses in
+// `pose_graph`. Both must outlive the MapPicture.
 struct MapPicture {
   std::string caption;
   const MapState* state = nullptr;
   const PoseGraph* pose_graph = nullptr;
-  // Whether the links of the page's closures are drawn, the first one last, and
-  // others below them.
+  // Whether to draw the links of the page's closures, the first one last, above
+  // `other_links`.
   bool shows_links = false;
   std::vector<SubmapLink> other_links = {};
-  // Of several maps that are laid over each other, each in its colour: which
-  // one a trajectory is of. Empty where all are of one map.
+  // If several maps are overlaid, each in its colour: the map that each
+  // trajectory belongs to. Empty for a single map.
   std::map<int, int> layers = {};
 };
 
@@ -52,30 +52,30 @@ struct MapPicture {
 // as ReadMap() and PrepareMap() do.
 using SubmapsReader = std::function<absl::Status(const SubmapCallback&)>;
 
-// The submaps where `pose_graph` has them.
+// The submaps at their poses in `pose_graph`.
 [[nodiscard]] std::vector<PlacedGrid> PlaceGrids(const MapState& state,
                                                  const PoseGraph& pose_graph);
 
-// Where the nodes of each trajectory are, in their order.
+// The positions of each trajectory's nodes, in order.
 [[nodiscard]] std::map<int, std::vector<Eigen::Vector2d>> PathsOf(
     const PoseGraph& pose_graph);
 
-// Adds the pictures of maps, and those of the page's closures, as many as the
-// options ask for. Calls the reader once.
+// Adds the pictures of maps and, up to the number in the options, those of the
+// page's closures. Calls the reader once.
 [[nodiscard]] absl::Status DrawPictures(const std::vector<MapPicture>& maps,
                                         const SubmapsReader& read_submaps,
                                         const ReportOptions& options,
                                         ReportContent* content);
 
-// Those that were not accepted first, then the least certain: where one should
-// look.
+// Sorts closures by how much they deserve a look: refused ones first, then by
+// increasing certainty.
 void SortByInterest(std::vector<ReportedClosure>* closures);
 
 [[nodiscard]] std::string FileName(const std::string& path);
 [[nodiscard]] std::string FormatPose(const Rigid2& pose);
 [[nodiscard]] std::string FormatError(const ConstraintError& error);
 
-// What the page says of the last of some optimisations, if there are any.
+// Adds the page's text about the last optimisation, if there is one.
 void AddOptimization(const OptimizationOptions& options,
                      const std::vector<OptimizationSummary>& summaries,
                      ReportContent* content);
@@ -85,7 +85,7 @@ void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
 // --- The pages, in request.directory. ---
 
 // The map before and after, every closure with its evidence, residuals, and the
-// time that the stages took. Calls the reader once. `input` is the map's name.
+// durations of the stages. Calls the reader once. `input` is the map's name.
 [[nodiscard]] absl::Status WriteCloseLoopsReport(
     const ReportRequest& request, const std::string& input,
     const LoopClosingResult& result, const SubmapsReader& read_submaps);
@@ -97,16 +97,16 @@ void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
                                             const Audit& audit,
                                             const SubmapsReader& read_submaps);
 
-// CSV, a line for each inter-submap constraint in the file's order: its number
-// among all constraints of the file, its ends and pose (submap <- node), the
-// group that it was judged with (numbered from 0) and the pose of that
-// (reference <- query), verdict and evidence. What an unchecked constraint has
-// no value of is empty.
+// CSV with a line for each inter-submap constraint, in the file's order: its
+// index among all constraints of the file, its ends and pose (submap <- node),
+// the group that it was judged with (numbered from 0) and the group's pose
+// (reference <- query), verdict and evidence. Values that an unchecked
+// constraint lacks are empty.
 [[nodiscard]] absl::Status WriteAuditTable(const std::string& path,
                                            const Audit& audit);
 
-// Both maps overlaid where the query was found, or would best fit; the matches,
-// and where they contradict.
+// Both maps, overlaid where the query was found or fits best; the matches, and
+// their contradictions.
 [[nodiscard]] absl::Status WriteRelocalizationReport(
     const ReportRequest& request, const Session& map, const Session& query,
     const Localization& result, const ProgressCallback& on_progress);

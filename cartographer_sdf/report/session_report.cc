@@ -25,16 +25,15 @@ ReportedClosure Reported(const Match& match, const bool accepted,
 std::vector<ReportedClosure> ClosuresOf(const Localization& result) {
   std::vector<ReportedClosure> closures;
   for (const Match& match : result.contradictions) {
-    closures.push_back(Reported(match, false,
-                                "walls in free space where this is found",
-                                kContradictingColor));
+    closures.push_back(Reported(
+        match, false, "walls in free space at this pose", kContradictingColor));
   }
   for (size_t k = 0; k < result.placements.size(); ++k) {
     const Placement& placement = result.placements[k];
     const std::string reason =
         k == 0 ? "agrees with the best placement"
         : placement.is_rival
-            ? absl::StrCat("for another placement, number ", k + 1)
+            ? absl::StrCat("supports another placement, number ", k + 1)
             : "neither supports nor excludes the best placement";
     for (const size_t vote : placement.votes) {
       closures.push_back(Reported(
@@ -75,7 +74,7 @@ std::map<int, int> LayersOf(const std::vector<MapPart>& parts) {
   return layers;
 }
 
-// Calls back with the submaps of a file, but for some, under their new numbers.
+// Calls back with the submaps of a file, except for some, under their new ids.
 absl::Status ReadPart(const MapPart& part,
                       const std::map<SubmapId, OccupancyGrid>& but,
                       const ProgressCallback& on_progress,
@@ -110,7 +109,7 @@ std::vector<std::pair<std::string, std::string>> LocalizationSummary(
       {"Submaps of the query", absl::StrCat(query.map.places.size())}};
 }
 
-// What became of each session and of each pair of them.
+// The outcome of each session and of each pair of sessions.
 void AddMergingSummary(const MergingResult& result,
                        const std::vector<std::string>& names,
                        ReportContent* const content) {
@@ -119,11 +118,12 @@ void AddMergingSummary(const MergingResult& result,
     content->summary.emplace_back(
         absl::StrCat(k + 1, ": ", names[k]),
         session.T_merged_session
-            ? "laid at " + FormatPose(*session.T_merged_session)
+            ? "placed at " + FormatPose(*session.T_merged_session)
             : "not connected with the merged maps");
     if (!session.T_merged_session) {
       content->warnings.push_back(absl::StrCat(
-          names[k], " is not connected with the others, and not in the map."));
+          names[k],
+          " is not connected with the others and is not in the map."));
     }
   }
   for (const SessionLink& link : result.links) {
@@ -148,13 +148,12 @@ void AddMergingSummary(const MergingResult& result,
 }
 
 const char* CaptionOf(const Localization& result) {
-  return result.T_map_query
-             ? "The map, and over it the query; red where walls of one stand "
-               "in the other's free space"
+  return result.T_map_query ? "The map, overlaid with the query; red where "
+                              "walls of one stand in the other's free space"
          : result.placements.empty()
-             ? "The map; there is no place for the query"
-             : "The map, and over it the query where it fits best, which is "
-               "not believed";
+             ? "The map; no placement of the query was found"
+             : "The map, overlaid with the query at its best but refused "
+               "placement";
 }
 
 MapState Moved(const Rigid2& T_picture_map, MapState state) {
@@ -167,7 +166,7 @@ MapState Moved(const Rigid2& T_picture_map, MapState state) {
   return state;
 }
 
-// Adds the picture of the map and, where a placement puts it, of the query.
+// Adds the picture of the map and, at its placement, of the query.
 absl::Status DrawPlacement(const ReportOptions& options, const Session& map,
                            const Session& query, const Localization& result,
                            const ProgressCallback& on_progress,
@@ -227,7 +226,7 @@ absl::Status WriteRelocalizationReport(const ReportRequest& request,
   const absl::Status status =
       DrawPlacement(request.options, map, query, result, on_progress, &content);
   if (!status.ok()) return status;
-  // The page has the ids of the files.
+  // The page uses the ids in the files.
   for (size_t k = 0; k < closures.size(); ++k) {
     content.closures[k].match.pair = closures[k].match.pair;
   }
@@ -256,15 +255,15 @@ absl::Status WriteMergingReport(const ReportRequest& request,
     return status;
   };
   if (!result.parts.empty()) {
-    const absl::Status status = DrawPictures(
-        {{"The merged map, a colour for each map; red where walls of one stand "
-          "in another's free space",
-          &result.state,
-          &result.closed.pose_graph,
-          /*shows_links=*/true,
-          {},
-          LayersOf(result.parts)}},
-        read, request.options, &content);
+    const absl::Status status =
+        DrawPictures({{"The merged map, with a colour for each input; red "
+                       "where walls of one stand in another's free space",
+                       &result.state,
+                       &result.closed.pose_graph,
+                       /*shows_links=*/true,
+                       {},
+                       LayersOf(result.parts)}},
+                     read, request.options, &content);
     if (!status.ok()) return status;
   }
   return WriteReport(request.directory, content);

@@ -18,10 +18,10 @@ constexpr Color kReferenceWall{0.05, 0.15, 0.45};
 constexpr Color kQueryWall{0.85, 0.1, 0.1};
 constexpr Color kContradiction{1., 0.6, 0.};
 constexpr Color kCorrespondence{0., 0.6, 0.3, 0.7};
-// Between them, a cell says too little to be drawn as either.
+// Between these, a cell is too uncertain to be drawn as either.
 constexpr float kMinWallProbability = 0.55f;
 constexpr float kMaxFreeProbability = 0.48f;
-// A wall this near explains a wall that is seen a little elsewhere.
+// A wall this close explains a slightly displaced wall.
 constexpr double kContradictionRadiusMeters = 0.3;
 constexpr double kMaxTranslationMeters = 1e6;
 
@@ -43,7 +43,7 @@ bool IsKnown(const OccupancyGrid& grid, const int i, const int j) {
   return grid.known(i, j);
 }
 
-// Of the cells that are so, in the submap frame.
+// Centres of the cells for which `is_so` returns true, in the submap frame.
 std::vector<Eigen::Vector2d> Centres(const OccupancyGrid& grid,
                                      bool (*is_so)(const OccupancyGrid&, int,
                                                    int)) {
@@ -58,7 +58,7 @@ std::vector<Eigen::Vector2d> Centres(const OccupancyGrid& grid,
   return centres;
 }
 
-// Of the known cells, or of the corner of a grid without any.
+// Bounding box of the known cells, or of the corner of a grid without any.
 Eigen::AlignedBox2d KnownBounds(const OccupancyGrid& grid,
                                 const Rigid2& T_frame_submap) {
   Eigen::AlignedBox2d bounds;
@@ -71,7 +71,8 @@ Eigen::AlignedBox2d KnownBounds(const OccupancyGrid& grid,
   return bounds;
 }
 
-// Where either submap is free space. The sheet is in the reference's grid.
+// Draws the free space of either submap. The sheet is in the reference's grid
+// frame.
 void DrawFreeSpace(const OccupancyGrid& reference, const OccupancyGrid& query,
                    const Rigid2& T_query_sheet, Sheet* const sheet) {
   constexpr Color kReferenceOnly{0.82, 0.88, 0.97};
@@ -86,12 +87,12 @@ void DrawFreeSpace(const OccupancyGrid& reference, const OccupancyGrid& query,
       });
 }
 
-// Squares of `size` [m]. Cell by cell, not pixel by pixel, so that none is
+// Draws squares of `size` [m] cell by cell, not pixel by pixel, so that none is
 // lost.
 void DrawCells(const std::vector<Eigen::Vector2d>& centres,
                const Rigid2& T_sheet_submap, const double size,
                const Color& color, Sheet* const sheet) {
-  // Whole pixels: blended edges would look like doubt.
+  // Whole pixels: blended edges would look like uncertainty.
   const double pixels =
       std::max(1., std::round(size * sheet->frame.pixels_per_meter));
   for (const Eigen::Vector2d& centre : centres) {

@@ -17,19 +17,19 @@ namespace cartographer_sdf {
 // A point seen in both submaps (reference, query), each in its own frame [m].
 using PointPair = std::pair<Eigen::Vector2d, Eigen::Vector2d>;
 
-// The query laid over the reference. Walls: reference dark blue, query red,
-// orange those of either that lie deep in the free space of the other. Free
-// space: of the reference alone bluish, of the query alone reddish, of both
-// white. Green lines join the correspondences. In the grid frame of the
-// reference, the longer side at `max_pixels`. The pose must be finite, and of
-// less than 1000 km.
+// The query laid over the reference. Walls are dark blue (reference) or red
+// (query), and orange where they lie deep in the free space of the other. Free
+// space is bluish (reference only), reddish (query only) or white (both). Green
+// lines join the correspondences. In the grid frame of the reference; the
+// longer side has `max_pixels` pixels. The pose must be finite and its
+// translation less than 1000 km.
 [[nodiscard]] Picture DrawMatchedPair(
     const OccupancyGrid& reference, const OccupancyGrid& query,
     const Rigid2& T_reference_query,
     const std::vector<PointPair>& correspondences, int max_pixels);
 
-// The centres of the walls of `walls` whose surroundings in `space` are known
-// to be free, in the submap frame of `space`. For showing; the verification
+// The centres of wall cells of `walls` whose surroundings in `space` are known
+// to be free, in the submap frame of `space`. For display only; verification
 // has its own measure.
 [[nodiscard]] std::vector<Eigen::Vector2d> ContradictedWalls(
     const OccupancyGrid& walls, const OccupancyGrid& space,

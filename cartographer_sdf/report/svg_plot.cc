@@ -27,7 +27,7 @@ constexpr double kTop = 30.;
 constexpr double kBottom = 44.;
 constexpr int kNumTicks = 5;
 
-// Beyond, differences overflow.
+// Beyond it, differences overflow.
 bool IsPlottable(const double value) { return std::abs(value) < 1e300; }
 
 struct Range {
@@ -35,7 +35,8 @@ struct Range {
   double end;
 };
 
-// That of the axis, or else of all values that can be plotted; never empty.
+// The range of the axis, or else of all values that can be plotted; never
+// empty.
 Range RangeOf(const PlotAxis& axis, const std::vector<double>& values) {
   Range range{std::numeric_limits<double>::infinity(),
               -std::numeric_limits<double>::infinity()};
@@ -90,7 +91,7 @@ std::vector<double> Ticks(const Range& range) {
   for (int i = 0; i <= 2 * kNumTicks; ++i) {
     const double tick = (first + i) * step;
     if (tick > range.end + 1e-9 * step) break;
-    // Adding zero takes the sign from zero.
+    // Adding zero turns -0 into 0.
     ticks.push_back(tick + 0.);
   }
   return ticks;
@@ -151,8 +152,7 @@ std::string Legend(const std::vector<std::string>& names,
   return svg;
 }
 
-// The nested <svg> clips what lies outside of given ranges. Filled series are
-// closed.
+// The nested <svg> clips at the given ranges. Filled series are closed.
 std::string Render(const LinePlot& plot, const bool is_filled) {
   std::vector<double> xs, ys;
   for (const LineSeries& series : plot.series) {

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Small plots as <svg> elements to be embedded in HTML. Axes and texts take the
-// colour of the surrounding text, so that they are readable on light and dark.
-// Points and values that are not finite are left out.
+// Small plots as <svg> elements for embedding in HTML. Axes and texts take the
+// colour of the surrounding text, so that they are readable on light and dark
+// backgrounds. Points and values that are not finite are left out.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_SVG_PLOT_H_
 #define CARTOGRAPHER_SDF_REPORT_SVG_PLOT_H_
@@ -18,7 +18,7 @@ namespace cartographer_sdf {
 
 struct PlotAxis {
   std::string label;
-  // Of all that is plotted, where it is not given.
+  // By default, the range of all plotted values.
   std::optional<std::pair<double, double>> range;
 };
 
@@ -45,7 +45,7 @@ struct HistogramSeries {
 struct HistogramPlot {
   std::string title;
   PlotAxis x;
-  // Values below and above the range are counted in the first and last bin.
+  // Values below and above the range count in the first and last bin.
   std::vector<HistogramSeries> series;
   int num_bins = 30;
 };
@@ -53,11 +53,11 @@ struct HistogramPlot {
 [[nodiscard]] std::string RenderLinePlot(const LinePlot& plot);
 [[nodiscard]] std::string RenderHistogram(const HistogramPlot& plot);
 
-// A plot as a file of its own, black on white.
+// A plot as a stand-alone file, black on white.
 [[nodiscard]] std::string StandaloneSvg(const std::string& plot);
 
-// Counts of values in `num_bins` equal bins of [begin, end]; those outside are
-// counted in the first and the last bin, NaN nowhere.
+// Counts values in `num_bins` equal bins of [begin, end]. Values outside count
+// in the first or last bin, NaN in none.
 [[nodiscard]] std::vector<int> CountInBins(const std::vector<double>& values,
                                            double begin, double end,
                                            int num_bins);

@@ -36,7 +36,7 @@ std::string EscapeCharacter(const char c) {
 
 std::string EscapeMarkup(const std::string_view text) {
   using Json = nlohmann::json;
-  // What is no UTF-8 does not come back from JSON.
+  // Replaces bytes that are not UTF-8.
   const std::string utf8 =
       Json::parse(Json(std::string(text))
                       .dump(-1, ' ', false, Json::error_handler_t::replace))

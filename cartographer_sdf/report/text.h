@@ -10,12 +10,14 @@
 
 namespace cartographer_sdf {
 
-// The text for HTML or SVG, in elements and in quoted attributes. Bytes that
-// are not UTF-8 become U+FFFD, as in json.h, control characters question marks.
+// Escapes the text for HTML or SVG, in elements and in quoted attributes. Bytes
+// that are not UTF-8 become U+FFFD, as in json.h; control characters become
+// question marks.
 [[nodiscard]] std::string EscapeMarkup(std::string_view text);
 
-// Lines with aligned columns, indented by two: the first column to the left,
-// others to the right. Rows may differ in length, none is empty.
+// Lines with aligned columns, indented by two: the first column is
+// left-aligned, the others are right-aligned. Rows may differ in length; none
+// is empty.
 [[nodiscard]] std::string FormatTable(
     const std::vector<std::vector<std::string>>& rows);
 

@@ -20,7 +20,7 @@ namespace {
 
 using Path = std::vector<Eigen::Vector2d>;
 
-// Less is no building to get lost in [m^2].
+// Smaller buildings make no useful drive [m^2].
 constexpr double kMinReachableArea = 4.;
 // The whole drive is this many times the round trip, see MakeItinerary.
 constexpr double kRoundTrips = 2.25;
@@ -31,8 +31,8 @@ struct Waypoint {
   ShortestPaths paths;
 };
 
-// A reachable cell whose cost from all places is at least half of the largest
-// there is; any reachable cell while there are no places.
+// Draws a reachable cell whose cost from all places is at least half of the
+// largest such cost; any reachable cell if there are no places.
 int DrawFarCell(const NavigationGrid& grid, const std::vector<Waypoint>& places,
                 RandomNumbers* const random) {
   std::vector<std::pair<float, int>> candidates;
@@ -58,7 +58,8 @@ float Cost(const Waypoint& from, const Waypoint& to) {
   return from.paths.cost[to.cell];
 }
 
-// Where the new place adds least to the round trip: after which place of it.
+// Index of the place in the round trip after which the new place adds the least
+// cost.
 size_t CheapestInsertion(const std::vector<Waypoint>& trip,
                          const Waypoint& place) {
   size_t best = 0;
@@ -98,7 +99,7 @@ std::vector<Waypoint> PlanRoundTrip(const NavigationGrid& grid,
   return trip;
 }
 
-// Indices of places: round, then back over the second half, then by a short
+// Indices of places: around, then back over the second half, then by a short
 // cut to the start and over the first half again.
 std::vector<int> MakeItinerary(const int num_places) {
   std::vector<int> itinerary;
@@ -110,8 +111,9 @@ std::vector<int> MakeItinerary(const int num_places) {
   return itinerary;
 }
 
-// Repeats the itinerary until the path is long enough, with what the robot
-// saves by cutting corners and turning short of dead ends.
+// Repeats the itinerary until the path is long enough, with a margin for the
+// length that the robot saves by cutting corners and turning short of dead
+// ends.
 Path MakePath(const NavigationGrid& grid, const std::vector<Waypoint>& trip,
               const DriveOptions& options) {
   const std::vector<int> itinerary =
@@ -130,12 +132,12 @@ Path MakePath(const NavigationGrid& grid, const std::vector<Waypoint>& trip,
   return path;
 }
 
-// Follows a point that runs ahead on the path ("pure pursuit"): turns towards
-// it, and drives as far as it looks that way; turns on the spot at ends of dead
+// Follows a point ahead on the path ("pure pursuit"): turns towards it, and
+// drives more slowly the larger the heading error; turns on the spot in dead
 // ends.
 std::vector<DrivenPose> Follow(const Path& path, const DriveOptions& options) {
   constexpr double kLookahead = 0.25;  // [m]
-  // Share of the heading error that is turned within a second [1/s].
+  // Turn rate per heading error [1/s].
   constexpr double kTurnGain = 3.;
   const Eigen::Vector2d start =
       path[std::min<size_t>(5, path.size() - 1)] - path.front();

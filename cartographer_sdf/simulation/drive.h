@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// A tour of a robot through a floor plan that returns to where it has been, in
-// the same and in the opposite direction.
+// A tour of a robot through a floor plan that revisits places in the same and
+// in the opposite direction.
 
 #ifndef CARTOGRAPHER_SDF_SIMULATION_DRIVE_H_
 #define CARTOGRAPHER_SDF_SIMULATION_DRIVE_H_
@@ -18,14 +18,14 @@
 namespace cartographer_sdf {
 
 struct DriveOptions {
-  // Way to go; the drive ends where it is reached [m].
+  // Length of the drive [m].
   double length = 360.;
-  // Planned distance of the robot's centre to walls [m]. Following the plan
-  // may cut a corner by up to 0.1 m.
+  // Planned distance of the robot's centre to walls [m]. Following the path may
+  // cut corners by up to 0.1 m.
   double clearance = 0.4;
   double speed = 0.5;      // [m/s]
   double turn_rate = 0.8;  // At most [rad/s].
-  // Between two poses [s].
+  // Time between two poses [s].
   double time_step = 0.05;
 };
 
@@ -37,9 +37,9 @@ struct DrivenPose {
 };
 
 // Visits places far from each other on a round trip of 4/9 of the length, then
-// the second half of it backwards, and, after a short cut, the first half
-// forwards again. The same for the same seed. An error where the plan has no
-// room for a robot that keeps the clearance.
+// drives its second half backwards and, after a short cut, its first half
+// forwards again. Deterministic for a given seed. Fails if the plan has no room
+// for a robot that keeps the clearance.
 [[nodiscard]] absl::StatusOr<std::vector<DrivenPose>> Drive(
     const FloorPlan& plan, const DriveOptions& options, uint32_t seed);
 

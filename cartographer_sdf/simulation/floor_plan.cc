@@ -17,16 +17,16 @@
 namespace cartographer_sdf {
 namespace {
 
-// Bound the memory that a hostile header can ask for, and its number of cells
-// along an axis.
+// Bounds on the memory that a hostile header can request, and on the number of
+// cells along an axis.
 constexpr int64_t kMaxPixels = 25'000'000;
 constexpr int64_t kMaxSide = 30'000;
 // The free threshold of ROS's map_server, 0.196 occupied, rounded so that its
-// grey of the unknown (205 of 255) is not free.
+// grey for unknown cells (205 of 255) is not free.
 constexpr double kFreeBrightness = 0.81;
 
-// Reads a decimal number of a PGM header or of P2 data; nothing where there is
-// none or it exceeds `maximum`.
+// Reads a decimal number of a PGM header or of P2 data; none if it is missing
+// or exceeds `maximum`.
 std::optional<int64_t> ReadNumber(const int64_t maximum,
                                   std::istream* const in) {
   while ((*in >> std::ws).peek() == '#') {
@@ -76,8 +76,8 @@ absl::StatusOr<PgmHeader> ReadPgmHeader(const std::string& path,
   return PgmHeader{is_text, *width, *height, *maximum};
 }
 
-// Calls visit(cell, its centre from that of the box) for the cells of a box of
-// half the given sizes, clipped to the plan.
+// Calls visit(cell, cell centre relative to the box centre) for the cells of a
+// box with the given half sizes, clipped to the plan.
 template <typename Visitor>
 void VisitBox(const CellGeometry& geometry, const Eigen::Vector2d& centre,
               const Eigen::Vector2d& half_size, const Visitor& visit) {
@@ -110,7 +110,7 @@ void VisitRectangle(const CellGeometry& geometry, const Eigen::Vector2d& centre,
            });
 }
 
-// Sets the mask, which may be empty yet, where the rectangle is occupied.
+// Sets the mask, which may still be empty, where the rectangle is occupied.
 void MarkOccupied(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                   const double yaw, const bool value, const FloorPlan& plan,
                   BoolArray* const mask) {
@@ -184,7 +184,7 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
       return absl::DataLossError(absl::StrCat(
           path, " ends or is corrupted at pixel ", k, " of ", width * height));
     }
-    // By rows, from the upper left on.
+    // By rows, starting at the upper left.
     plan.occupied(k % width, height - 1 - k / width) =
         static_cast<double>(*pixel) <
         kFreeBrightness * static_cast<double>(maximum);

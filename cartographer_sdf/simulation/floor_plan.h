@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A building as a raster of walls, in the world frame [m]: the origin is the
-// lower left corner, x to the right, y up. World stands for the submap frame of
-// CellGeometry, and the grid frame is the world frame.
+// lower left corner, x to the right, y up. The world frame takes the role of
+// CellGeometry's submap frame and equals the grid frame.
 
 #ifndef CARTOGRAPHER_SDF_SIMULATION_FLOOR_PLAN_H_
 #define CARTOGRAPHER_SDF_SIMULATION_FLOOR_PLAN_H_
@@ -19,11 +19,11 @@ namespace cartographer_sdf {
 
 struct FloorPlan {
   CellGeometry geometry;
-  // What stops light and robots; what lies outside the raster does, too.
+  // Cells that stop light and robots, as does everything outside the raster.
   BoolArray occupied;
-  // Occupied cells that are of glass, which lets most beams through, and those
-  // that lie above or below the beams, as a table between its legs. Either is
-  // empty where there are none.
+  // Occupied cells of glass, which lets most beams through, and occupied cells
+  // above or below the beams, such as a table top. Each mask is empty if there
+  // are no such cells.
   BoolArray glass;
   BoolArray unseen;
 };
@@ -32,14 +32,14 @@ struct FloorPlan {
 [[nodiscard]] FloorPlan EmptyFloorPlan(const Eigen::Vector2d& size,
                                        double resolution);
 
-// Set the cells whose centres lie in the shape, clipped to the plan; a disc is
+// Sets the cells whose centres lie in the shape, clipped to the plan; a disc is
 // occupied.
 void FillRectangle(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                    double yaw, bool occupied, FloorPlan* plan);
 void FillDisc(const Eigen::Vector2d& centre, double radius, FloorPlan* plan);
 
-// The same for what is occupied in the rectangle: makes it of glass, or sets
-// whether it is unseen.
+// Marks the occupied cells in the rectangle as glass, or sets whether they are
+// unseen.
 void MakeGlass(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,
                double yaw, FloorPlan* plan);
 void MakeUnseen(const Eigen::Vector2d& centre, const Eigen::Vector2d& size,

@@ -11,7 +11,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Where the beam meets the first person; nothing where it meets none.
+// Distance along the beam to the first person; none if it hits nobody.
 std::optional<double> RangeToPeople(const std::vector<Person>& people,
                                     const Eigen::Vector2d& p_world,
                                     const Eigen::Vector2d& direction) {
@@ -68,7 +68,8 @@ Scan TakeScan(const FloorPlan& plan, const std::vector<Person>& people,
               RandomNumbers* const random) {
   Scan scan;
   for (int k = 0; k != options.num_beams; ++k) {
-    // Beams in the middles of equal sectors: none twice in a full circle.
+    // Beams at the centres of equal sectors, so that none repeats in a full
+    // circle.
     const double angle =
         options.field_of_view * ((k + 0.5) / options.num_beams - 0.5);
     const Eigen::Vector2d beam(std::cos(angle), std::sin(angle));
@@ -80,7 +81,8 @@ Scan TakeScan(const FloorPlan& plan, const std::vector<Person>& people,
     const Eigen::Vector2d direction = T_world_robot.RotationMatrix() * beam;
     std::optional<double> range =
         RangeToPeople(people, T_world_robot.translation(), direction);
-    // Nobody stands within a wall, but beyond one or beyond the lidar's range.
+    // Nobody stands inside a wall, but people may be behind one or out of
+    // range.
     const std::optional<double> to_wall =
         CastRay(plan, T_world_robot.translation(), direction, options.max_range,
                 through_glass);

@@ -28,26 +28,25 @@ struct LidarOptions {
   double max_range = 20.;
   // Standard deviation [m].
   double range_noise = 0.015;
-  // Fraction of the beams that are lost.
+  // Fraction of beams that are lost.
   double drop_outs = 0.005;
-  // Fraction of the beams on glass that return from it; the others see what is
-  // behind. Independent of the angle.
+  // Fraction of the beams on glass that return from it; the others pass
+  // through. Independent of the angle.
   double glass_echo = 0.3;
 };
 
 [[nodiscard]] std::string Validate(const LidarOptions& options);
 
 // Distance from a point to the first occupied cell in a direction (of unit
-// norm), those that are unseen left out, and if so asked those of glass;
-// nothing where there is none within `max_range` or within the plan.
+// norm). Skips unseen cells and, if `through_glass`, glass. None if there is no
+// such cell within `max_range` and the plan.
 [[nodiscard]] std::optional<double> CastRay(const FloorPlan& plan,
                                             const Eigen::Vector2d& p_world,
                                             const Eigen::Vector2d& direction,
                                             double max_range,
                                             bool through_glass = false);
 
-// In the robot frame; misses end at the largest range. `people` stand before
-// the walls.
+// In the robot frame; misses end at the largest range. `people` occlude walls.
 [[nodiscard]] Scan TakeScan(const FloorPlan& plan,
                             const std::vector<Person>& people,
                             const Rigid2& T_world_robot,

@@ -26,13 +26,13 @@ constexpr double kMinRoomWidth = 3.;
 constexpr double kMaxRoomWidth = 8.;
 constexpr double kCorridorWidth = 2.2;
 constexpr double kDoorWidth = 1.1;
-// What doors keep free of furniture about their middle [m].
+// Radius around the middle of a door that is kept free of furniture [m].
 constexpr double kDoorRadius = 0.5 * kDoorWidth + 0.8;
 
 struct Room {
   AlignedBox2d box;
   // The part of the room's wall that faces the corridor, and the unit vector
-  // from there into the corridor.
+  // from it into the corridor.
   Vector2d wall_begin, wall_end;
   Vector2d outward;
 };
@@ -127,7 +127,7 @@ void DrawWalls(const AlignedBox2d& box, const double thickness,
   }
 }
 
-// Leaves of a table that stands in the plan what a lidar sees of it: the legs.
+// Leaves only the legs of a table in the plan visible to a lidar.
 void OpenTable(const Vector2d& centre, const Vector2d& size, const double yaw,
                FloorPlan* const plan) {
   const Vector2d leg = Vector2d::Constant(0.06);

@@ -34,8 +34,7 @@ void VisitNeighbours(const Eigen::Array2i& size, const int cell,
   }
 }
 
-// Clearance at the resolution of the plan. What lies outside the plan is
-// occupied.
+// Clearance at the resolution of the plan. Cells outside the plan are occupied.
 Eigen::ArrayXXf ComputeClearance(const FloorPlan& plan) {
   const Eigen::Index width = plan.occupied.rows();
   const Eigen::Index height = plan.occupied.cols();
@@ -51,7 +50,7 @@ Eigen::ArrayXXf ComputeClearance(const FloorPlan& plan) {
   return squared.sqrt() * static_cast<float>(resolution);
 }
 
-// Keeps the largest connected set only; the first one among equals.
+// Keeps only the largest connected set; the first one on ties.
 void KeepLargestComponent(BoolArray* const cells) {
   const Eigen::Array2i size(cells->rows(), cells->cols());
   std::vector<int> component(cells->size(), -1);
@@ -154,7 +153,7 @@ std::vector<Eigen::Vector2d> SmoothPath(const NavigationGrid& grid,
     cell = paths.parent[cell];
   }
   std::reverse(path.begin(), path.end());
-  // Spreads over about the square root of it in cells, half a metre.
+  // Smooths over about the square root of this number in cells, half a metre.
   constexpr int kIterations = 30;
   for (int iteration = 0; iteration != kIterations; ++iteration) {
     for (size_t k = 1; k + 1 < path.size(); ++k) {

@@ -18,7 +18,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// Between a person's centre and walls [m].
+// Least distance between a person's centre and walls [m].
 constexpr double kClearance = 0.3;
 
 using Places = std::vector<Eigen::Vector2d>;
@@ -29,13 +29,13 @@ const Eigen::Vector2d& AtOrLast(const Places& places, const double index) {
                          places.size() - 1)];
 }
 
-// Where somebody is who walks about, every People::kTimeStep.
+// Positions of a walking person, every People::kTimeStep.
 absl::StatusOr<Places> Walk(const FloorPlan& plan, const double duration,
                             RandomNumbers* const random) {
   DriveOptions walk;
   walk.clearance = kClearance;
   walk.speed = People::kWalkingSpeed;
-  // Turns on the spot take time that is not walked.
+  // Turns on the spot take time without walking.
   walk.length = std::max(1., walk.speed * duration);
   walk.turn_rate = 3.;
   walk.time_step = People::kTimeStep;
@@ -49,7 +49,7 @@ absl::StatusOr<Places> Walk(const FloorPlan& plan, const double duration,
   return places;
 }
 
-// All places where somebody can stand.
+// All places where a person can stand.
 Places FindRoom(const FloorPlan& plan) {
   const NavigationGrid grid = MakeNavigationGrid(plan, kClearance);
   Places room;

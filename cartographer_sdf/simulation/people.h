@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // People in a building while a robot drives through it: some walk all the time,
-// some stand for a while here and then there. Seen as discs, as high as the
-// lidar. They keep away from walls and out of the robot's way.
+// others stand for a while in changing places. The lidar sees them as discs.
+// They keep away from walls and out of the robot's way.
 
 #ifndef CARTOGRAPHER_SDF_SIMULATION_PEOPLE_H_
 #define CARTOGRAPHER_SDF_SIMULATION_PEOPLE_H_
@@ -32,30 +32,30 @@ struct Person {
   double radius = 0.;
 };
 
-// Nobody, as they are made.
+// Default-constructed, there are no people.
 struct People {
   static constexpr double kRadius = 0.2;        // of each [m]
   static constexpr double kWalkingSpeed = 1.2;  // [m/s]
-  // How long one stands in a place [s].
+  // Time that a person stands in one place [s].
   static constexpr double kStandingTime = 120.;
-  // Between the centres of robot and person [m].
+  // Least distance between the centres of robot and person [m].
   static constexpr double kRobotSpace = 0.6;
 
-  // For each who walks, the places every kTimeStep; for each who stands, those
-  // of each kStandingTime, shifted by a time of one's own.
+  // For each walking person, the positions every kTimeStep; for each standing
+  // person, a position per kStandingTime and an individual time shift.
   static constexpr double kTimeStep = 0.1;  // [s]
   std::vector<std::vector<Eigen::Vector2d>> walks;
   std::vector<std::vector<Eigen::Vector2d>> stands;
   std::vector<double> shifts;
 
-  // All who are farther than `kRobotSpace` from the robot; the others have
-  // stepped aside. Times beyond the duration: as at its end.
+  // Everyone farther than `kRobotSpace` from the robot; the others have stepped
+  // aside. Times beyond the duration yield the positions at its end.
   [[nodiscard]] std::vector<Person> At(double seconds,
                                        const Rigid2& T_world_robot) const;
 };
 
-// For `duration` seconds; the same for the same arguments. An error where the
-// plan has no room for people.
+// Places people for `duration` seconds. Deterministic. Fails if the plan has no
+// room for people.
 [[nodiscard]] absl::StatusOr<People> PlacePeople(const FloorPlan& plan,
                                                  const PeopleOptions& options,
                                                  double duration,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Random numbers that are the same with every standard library: the standard
-// fixes the engine, but not what its distributions draw.
+// Random numbers that are identical with every standard library: the standard
+// specifies the engines, but not the output of the distributions.
 
 #ifndef CARTOGRAPHER_SDF_SIMULATION_RANDOM_NUMBERS_H_
 #define CARTOGRAPHER_SDF_SIMULATION_RANDOM_NUMBERS_H_
@@ -13,8 +13,8 @@
 
 namespace cartographer_sdf {
 
-// What the numbers are for: purposes that share a seed do not share numbers,
-// and one that needs more of them does not change the others.
+// The purpose of the numbers. Purposes that share a seed do not share numbers,
+// and drawing more numbers for one does not change the others.
 enum class RandomStream : uint32_t {
   kPlan,
   kDrive,
@@ -37,7 +37,7 @@ class RandomNumbers {
   bool Chance(double probability) { return Uniform(0., 1.) < probability; }
   // In [0, size); size > 0.
   int Index(int size) { return static_cast<int>(Uniform(0., size)); }
-  // Standard normal, by Box and Muller.
+  // Standard normal, by the Box-Muller transform.
   double Normal() {
     const double radius = std::sqrt(-2. * std::log(1. - Uniform(0., 1.)));
     return radius * std::cos(Uniform(0., 2. * M_PI));

@@ -24,7 +24,7 @@ constexpr int64_t kStartTime =
 // last one [m, rad].
 constexpr double kNodeDistance = 0.2;
 constexpr double kNodeRotation = 10. * M_PI / 180.;
-// Side of the squares of which a node keeps one point each [m].
+// Side of the squares from which a node keeps one point each [m].
 constexpr double kVoxelSize = 0.05;
 
 int64_t ToTicks(const double seconds) {
@@ -38,7 +38,7 @@ std::vector<size_t> FilterMotion(const std::vector<DrivenPose>& drive) {
   for (size_t k = 1; k < drive.size(); ++k) {
     const Rigid2 T_last_robot =
         drive[kept.back()].T_world_robot.Inverse() * drive[k].T_world_robot;
-    // Rounding must not decide on steps that add up to the distance.
+    // Rounding must not decide when steps add up exactly to the distance.
     if (T_last_robot.translation().norm() > kNodeDistance - 1e-6 ||
         std::abs(T_last_robot.rotation()) > kNodeRotation - 1e-6) {
       kept.push_back(k);
@@ -78,7 +78,8 @@ SimulatedSubmap MakeSubmap(const std::vector<SimulatedNode>& nodes,
   return submap;
 }
 
-// Each submap takes the nodes of two intervals, and shares each with another.
+// Each submap takes the nodes of two intervals and shares each with another
+// submap.
 std::vector<SimulatedSubmap> MakeSubmaps(
     const std::vector<SimulatedNode>& nodes, const std::vector<Scan>& scans,
     const int interval, const ProgressCallback& on_progress) {
@@ -92,7 +93,7 @@ std::vector<SimulatedSubmap> MakeSubmaps(
   return submaps;
 }
 
-// As FilterMotion, without those at the end that fill no submap.
+// As FilterMotion, without nodes at the end that do not fill a submap.
 absl::StatusOr<std::vector<size_t>> ChooseNodes(
     const std::vector<DrivenPose>& drive, const int num_range_data) {
   std::vector<size_t> kept = FilterMotion(drive);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What Cartographer's local SLAM would have saved of a drive through a floor
-// plan with loop closing switched off, and where it really was. One trajectory,
+// The map that Cartographer would have saved of a drive through a floor plan
+// with loop closing switched off, and the true poses. It has one trajectory,
 // number 0.
 
 #ifndef CARTOGRAPHER_SDF_SIMULATION_SIMULATED_MAP_H_
@@ -31,7 +31,8 @@ struct SimulationOptions {
   LidarOptions lidar;
   PeopleOptions people;
   DriftOptions drift;
-  // A submap holds twice as many scans, and shares half of them with the next.
+  // A submap holds twice this number of scans and shares half of them with the
+  // next.
   int num_range_data = 60;
 };
 
@@ -50,7 +51,7 @@ struct SimulatedSubmap {
   // Nodes [first_node, end_node) were inserted.
   int first_node = 0;
   int end_node = 0;
-  // As the host's: at the first node, with the orientation of the local frame.
+  // As in the host: at the first node, with the orientation of the local frame.
   Rigid2 T_local_submap;
   // From the true pose of the first node.
   Rigid2 T_world_submap;
@@ -62,7 +63,7 @@ struct SimulatedOdometry {
   Rigid2 T_odometry_node;
 };
 
-// All submaps are finished, and each node is in one submap at least.
+// All submaps are finished, and each node is in at least one submap.
 struct SimulatedMap {
   std::vector<SimulatedNode> nodes;
   std::vector<SimulatedSubmap> submaps;
@@ -70,18 +71,19 @@ struct SimulatedMap {
   std::vector<SimulatedOdometry> odometry;
 };
 
-// The same map for the same arguments; another seed is another session in the
-// same building: other places, drift and noise. Errors: invalid options, a plan
-// without room for the robot, a drive too short for a submap. The progress is a
-// fraction of the time needed.
+// Deterministic. A different seed yields another session in the same building,
+// with other places, drift and noise. Fails on invalid options, a plan without
+// room for the robot, or a drive too short for a submap. The progress is the
+// fraction of the total time.
 [[nodiscard]] absl::StatusOr<SimulatedMap> Simulate(
     const FloorPlan& plan, const SimulationOptions& options, uint32_t seed,
     const ProgressCallback& on_progress = {});
 
-// Writes the map with its drifted poses and the constraints of local SLAM, each
-// node to the submaps it was inserted in, as a .pbstream that Cartographer
-// loads, and the truth as kind,trajectory,index,x,y,yaw: poses of submaps and
-// nodes in the world. Either file is written whole or not at all.
+// Writes the map as a .pbstream that Cartographer loads, with its drifted poses
+// and the constraints of local SLAM between each node and the submaps it was
+// inserted in. Writes the truth as kind,trajectory,index,x,y,yaw: poses of
+// submaps and nodes in the world frame. Each file is written completely or not
+// at all.
 [[nodiscard]] absl::Status WriteSimulatedMap(const SimulatedMap& map,
                                              const std::string& map_path,
                                              const std::string& truth_path);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // A .pbstream that Cartographer loads: header, pose graph, options, submaps,
-// nodes, odometry, in this order. Its readers insist on the first three.
+// nodes, odometry, in this order. Its readers require the first three.
 
 #include <string>
 #include <utility>
@@ -24,7 +24,7 @@ namespace {
 constexpr int kTrajectory = 0;
 constexpr int kFormatVersion = 2;
 
-// Of the host's SensorId: RANGE and ODOMETRY.
+// From the host's SensorId: RANGE and ODOMETRY.
 constexpr int kRangeSensor = 0;
 constexpr int kOdometrySensor = 2;
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kSubmap[] = "submap";
 constexpr char kNode[] = "node";
-// [m], as in maps: beyond, cells could not be counted.
+// [m], as in maps: beyond it, cells could not be counted.
 constexpr double kMaxTruthCoordinate = 1e9;
 
 template <typename Id>

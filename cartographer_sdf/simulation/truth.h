@@ -15,8 +15,8 @@
 
 namespace cartographer_sdf {
 
-// Where submaps and nodes of a map really were. Absent is what nothing is known
-// of, or what has no one true pose: submaps that local SLAM tore.
+// True poses of a map's submaps and nodes. Absent if unknown, or if there is no
+// single true pose: submaps that local SLAM tore.
 struct Truth {
   std::map<SubmapId, Rigid2> T_world_submap;
   // Of the tracking frame at the nodes.
@@ -27,7 +27,7 @@ struct Truth {
 // m, rad].
 [[nodiscard]] absl::StatusOr<Truth> ReadTruth(const std::string& path);
 
-// To 1e-9 m and 1e-9 rad.
+// Precise to 1e-9 m and 1e-9 rad.
 [[nodiscard]] absl::Status WriteTruth(const std::string& path,
                                       const Truth& truth);
 

@@ -13,8 +13,8 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(constraints, "",
-              "CSV file for every inter-submap constraint, with its verdict "
-              "and evidence. None if empty.");
+              "CSV file to write every inter-submap constraint to, with its "
+              "verdict and evidence. None if empty.");
 
 namespace cartographer_sdf {
 namespace {
@@ -72,12 +72,13 @@ Subcommand AuditSubcommand() {
       "--input A.pbstream [--output B.pbstream] [--report DIR] "
       "[--constraints C.csv]",
       "Checks every inter-submap constraint: whether walls of one submap stand "
-      "in free space of the other at the constraint's own pose, whether "
-      "another pose of the two is as good, whether it agrees with the others "
-      "in cycles, and whether the map that is made without the doubtful ones "
-      "has it elsewhere. With --output, writes the map without the doubtful "
-      "ones, optimised anew; everything else in the file stays as it is.\n\n"
-      "A map without a doubtful constraint comes out as it went in.",
+      "in free space of the other at the constraint's pose, whether another "
+      "pose of the two submaps is as good, whether the constraint agrees with "
+      "the others in cycles, and whether the map made without doubtful "
+      "constraints contradicts it. With --output, writes the map without the "
+      "doubtful constraints, optimised again; everything else in the file "
+      "stays unchanged.\n\n"
+      "A map without doubtful constraints is written unchanged.",
       {"input"},
       {"output", "report", "constraints", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},

@@ -14,7 +14,7 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(closures, "",
-              "CSV file for the closures that went into the graph, with their "
+              "CSV file to write the closures in the pose graph to, with their "
               "evidence. None if empty.");
 
 namespace cartographer_sdf {
@@ -44,7 +44,7 @@ void PrintSummary(const LoopClosingResult& result) {
     }
   }
   if (result.closed.closures.empty()) {
-    std::cout << "No loop closure was found; the map is as it was.\n";
+    std::cout << "No loop closure was found; the map is unchanged.\n";
   }
   PrintStages(result.stage_seconds);
   PrintConvergence(result.closed.optimizations);
@@ -85,12 +85,11 @@ Subcommand CloseLoopsSubcommand() {
       "--input A.pbstream --output B.pbstream [--closures C.csv] "
       "[--report DIR]",
       "Compares every pair of submaps by the shape of their free space, "
-      "without a pose prior; verifies what matches; keeps a mutually "
-      "consistent set; "
-      "adds it to the pose graph as inter-submap constraints; optimises; and "
-      "writes a map that Cartographer's own tools load. Everything else in the "
-      "file stays as it is.\n\n"
-      "A map in which nothing is found comes out as it went in.",
+      "without a pose prior; verifies the matches; keeps a mutually consistent "
+      "set; adds it to the pose graph as inter-submap constraints; optimises; "
+      "and writes a map that Cartographer's own tools load. Everything else in "
+      "the file stays unchanged.\n\n"
+      "A map without new closures is written unchanged.",
       {"input", "output"},
       {"closures", "report", "frozen_trajectories", "configuration_directory",
        "configuration_basename", "threads"},

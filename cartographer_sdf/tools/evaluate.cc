@@ -28,30 +28,31 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(relations, "",
-              "Relations of scans that were verified by hand, lines of i, j, "
-              "x, y, theta, t1, t2.");
-DEFINE_string(matches, "",
-              "Matches to score, as `match` writes them; several files are "
-              "separated by commas.");
+              "File of manually verified relations between scans, with lines "
+              "of i, j, x, y, theta, t1, t2.");
+DEFINE_string(
+    matches, "",
+    "Files of matches to score, as `match` writes them, separated by commas.");
 DEFINE_double(positive_overlap, 0.5,
-              "Pairs of submaps are positive whose common area is at least "
-              "this fraction of the smaller one's. Of --matches.");
+              "For --matches: a pair of submaps is positive if its common area "
+              "is at least this fraction of the smaller submap's area.");
 DEFINE_string(labels, "",
-              "The file to write to what the truth says of each match; of "
-              "several files of matches as many, separated by commas.");
+              "CSV files to write the truth about each match to, one for each "
+              "file of --matches, separated by commas.");
 DEFINE_string(query_truth, "",
-              "True poses of the second map, in the world of the first.");
-DEFINE_string(csv, "", "The file to write all numbers to.");
+              "File of true poses for the map of --query, in the world frame "
+              "of --truth.");
+DEFINE_string(csv, "", "CSV file to write all numbers to.");
 DEFINE_string(
     curves, "",
-    "The file to write precision and recall over the threshold to: of "
-    "--random_pairs, each method a series, and of --matches.");
-DEFINE_string(plot, "",
-              "The file to draw the same curves to, an SVG; without those of "
-              "--max_clearances.");
+    "CSV file to write precision and recall over the score threshold to, with "
+    "a series for each method of --random_pairs and each file of --matches.");
+DEFINE_string(
+    plot, "",
+    "SVG file to draw these curves to, without those of --max_clearances.");
 DEFINE_string(free_space_plot, "",
-              "The file to draw to the curves of the paper's method by "
-              "--max_clearances, beside shape_context, an SVG.");
+              "SVG file to draw the curves of method paper for each of "
+              "--max_clearances to, and that of shape_context.");
 
 namespace cartographer_sdf {
 namespace {
@@ -118,7 +119,7 @@ absl::Status MeasureRelations(const PoseGraph& pose_graph,
 
 absl::Status MeasureTrajectory(const PoseGraph& pose_graph, const Truth& truth,
                                std::vector<Measurement>* const measurements) {
-  // A truth of the submaps alone serves the matches.
+  // A truth with submaps only is sufficient for matches.
   if (truth.T_world_tracking.empty()) return absl::OkStatus();
   const std::optional<TrajectoryError> error =
       EvaluateTrajectory(pose_graph, truth);
@@ -168,8 +169,8 @@ std::vector<std::string> FilesOf(const std::string& flag) {
   return absl::StrSplit(flag, ',', absl::SkipEmpty());
 }
 
-// What results of a table of matches are called: of several, each after its
-// file.
+// Names of the results of each table of matches; with several tables, after
+// their files.
 std::string SeriesName(const std::string& path) {
   std::string name = std::filesystem::path(path).stem().string();
   std::replace_if(
@@ -179,7 +180,7 @@ std::string SeriesName(const std::string& path) {
   return name;
 }
 
-// Of the submaps of --input, or of them and those of --query.
+// Pairs of submaps of --input, or of --input and --query.
 absl::StatusOr<PairTruths> PairTruthsOfFlags(const EvaluatedMap& map,
                                              const Truth& truth) {
   PairTruths pairs;
@@ -341,29 +342,30 @@ absl::Status RunEvaluate() {
 }
 
 constexpr char kDescription[] =
-    "Errors of scans against --relations, of all and of those more than 30 s "
-    "apart; of nodes against --truth after a rigid alignment; and scores of "
-    "--matches: of answers by falling score, the fraction of positive pairs "
-    "that are answered before the first wrong one (recall_p1), at a "
-    "precision of 0.99 (recall_p99), and average precision (ap). Answers of "
-    "one score count in the order of the table, in recall_p1_ties all "
-    "together. Of several tables each gets its line.\n\n"
-    "A pair of submaps is positive where half of the smaller observed area "
-    "lies in the other. An answer is right within 0.5 m and 10 degrees of "
-    "the truth, wrong beyond 1 m or 10 degrees, and near between. --labels "
-    "writes this for each match.\n\n"
-    "--random_pairs is the protocol of the paper: pairs drawn by "
-    "--pair_seed, "
-    "one submap of each turned before it is described, matched by --methods. "
-    "An answer is right where the pair's common area reaches "
-    "--min_overlaps; in the columns with _pose, where its pose is, too.";
+    "Prints the errors of scans against --relations, for all relations and for "
+    "those more than 30 s apart; the errors of nodes against --truth after a "
+    "rigid alignment; and scores of --matches. With answers ordered by "
+    "decreasing score, the scores are the fraction of positive pairs with a "
+    "right answer before the first wrong one (recall_p1), that at a precision "
+    "of 0.99 (recall_p99), and average precision (ap). Answers with equal "
+    "scores count in the order of the table; in recall_p1_ties, together. Each "
+    "file of --matches gets a line.\n\n"
+    "A pair of submaps is positive if at least --positive_overlap of the "
+    "smaller observed area lies in the other. An answer is right within 0.5 m "
+    "and 10 degrees of the truth, wrong beyond 1 m or 10 degrees, and near in "
+    "between. --labels writes this for each match.\n\n"
+    "--random_pairs follows the protocol of the paper: draws pairs with "
+    "--pair_seed, rotates one submap of each before describing it, and matches "
+    "the pairs by --methods. An answer is right if the pair's common area "
+    "reaches --min_overlaps; in the columns with _pose, its pose must be "
+    "right, too.";
 
 }  // namespace
 
 Subcommand Evaluate() {
   return Subcommand{
       "evaluate",
-      "errors of a map and of matches against the truth",
+      "measure the errors of a map and of matches",
       "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
       "[--random_pairs N]]",
       kDescription,

@@ -21,30 +21,29 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_int32(random_pairs, 0,
-             "Number of random pairs of submaps to match, the query of each "
-             "turned by a random angle; fewer where the map has fewer. 0: "
-             "none.");
+             "Number of random pairs of submaps to match, each query rotated "
+             "by a random angle; fewer if the map has fewer. 0: none.");
 DEFINE_string(methods, "paper,shape_context,sdf",
-              "The methods that --random_pairs tries, separated by commas.");
+              "Methods for --random_pairs, separated by commas.");
 DEFINE_int32(pair_seed, 42,
-             "Of which pairs are drawn, and how they are turned.");
+             "Random seed for the choice of pairs and their rotation.");
 DEFINE_string(min_overlaps, "0.5,0.1,0.2,0.3,0.4,0.6,0.7",
-              "A random pair is a match where the common area is at least this "
-              "fraction of the smaller one's. The first is that of the curves; "
-              "numbers are told for all, as the paper leaves it open.");
+              "Fractions, separated by commas: a random pair is a match if the "
+              "common area is at least this fraction of the smaller submap's "
+              "area. The curves use the first; numbers are given for all, as "
+              "the paper does not specify it.");
 DEFINE_int32(min_index_gap, 3,
-             "Random pairs of one trajectory are submaps whose indices differ "
-             "by this or more; nearer than 3 they share scans.");
-DEFINE_string(
-    max_clearances, "",
-    "Distances, separated by commas [m]: method paper is tried also "
-    "by the keypoints alone that are within each of a wall, as in the "
-    "paper's 2.0,1.5,1.0,0.5.");
+             "Least difference of the indices of a random pair within one "
+             "trajectory; below 3, submaps share scans.");
+DEFINE_string(max_clearances, "",
+              "Distances, separated by commas [m]: method paper is also tested "
+              "with only the keypoints within each distance of a wall; in the "
+              "paper, 2.0,1.5,1.0,0.5.");
 
 namespace cartographer_sdf {
 namespace {
 
-// Numbers of a flag, each in [least, most].
+// Parses the numbers of a flag, each in [least, most].
 absl::StatusOr<std::vector<double>> ParseNumbers(const std::string& flag,
                                                  const std::string& text,
                                                  const double least,
@@ -125,7 +124,7 @@ absl::StatusOr<RandomPairData> ReadData(const Truth& truth,
   return data;
 }
 
-// The answers of one method: with all features, and by each clearance.
+// The answers of one method: with all features, and for each clearance.
 absl::StatusOr<std::vector<std::vector<MatchRow>>> Answer(
     const std::string& method, const RandomPairData& data,
     const std::vector<double>& max_clearances, const Executor& executor,

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `evaluate --random_pairs`: the paper's protocol, with its comparison method
-// and its ablation ([Millane2019], Sec. V-A and V-B).
+// `evaluate --random_pairs`: the paper's protocol, with its baseline and its
+// ablation ([Millane2019], Sec. V-A and V-B).
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_EVALUATE_RANDOM_PAIRS_H_
 #define CARTOGRAPHER_SDF_TOOLS_EVALUATE_RANDOM_PAIRS_H_
@@ -16,11 +16,11 @@
 
 namespace cartographer_sdf {
 
-// Whether the flags ask for it; a UsageError where they make no sense.
+// Whether the flags ask for it; a UsageError if they are invalid.
 [[nodiscard]] bool WantsRandomPairs();
 [[nodiscard]] absl::Status CheckRandomPairFlags();
 
-// Adds measurements, and curves by the paper's judgement.
+// Adds measurements, and curves with AnswerJudgement::kByPair.
 [[nodiscard]] absl::Status MeasureRandomPairs(
     const Truth& truth, std::vector<Measurement>* measurements,
     std::vector<NamedCurve>* curves);

@@ -21,14 +21,14 @@
 
 DECLARE_uint32(seed);
 DEFINE_string(wrong_constraints, "",
-              "CSV file to write to which constraints were added.");
-DEFINE_string(kinds, "corridor,door,half_turn,twin,row,random",
-              "Kinds of wrong constraints, separated by commas: of submaps "
-              "that overlap, slid along the walls at random (corridor) or to "
-              "where they look most alike (door), or turned (half_turn); of "
-              "different places that look alike, alone (twin) or with their "
-              "neighbours (row); random poses (random).");
-DEFINE_int32(pairs, 3, "Pairs of submaps of each kind.");
+              "CSV file to write a list of the added constraints to.");
+DEFINE_string(
+    kinds, "corridor,door,half_turn,twin,row,random",
+    "Kinds of wrong constraints, separated by commas: overlapping submaps, "
+    "slid along the walls at random (corridor) or to where they look most "
+    "alike (door), or rotated (half_turn); different places that look alike, "
+    "alone (twin) or with their neighbours (row); random poses (random).");
+DEFINE_int32(pairs, 3, "Number of pairs of submaps (or rows) of each kind.");
 
 namespace cartographer_sdf {
 namespace {
@@ -112,14 +112,13 @@ absl::Status RunFalsify() {
 Subcommand FalsifySubcommand() {
   Subcommand subcommand{
       "falsify",
-      "add wrong constraints to a map, to test audit with",
+      "add wrong constraints to a map, to test audit",
       "--input A.pbstream --output B.pbstream --wrong_constraints W.csv "
       "[--kinds K,...] [--pairs N] [--seed N]",
-      "Takes the map for right, adds inter-submap constraints that are wrong, "
-      "and optimises, so that the map is bent as Cartographer's would be. "
-      "--wrong_constraints names them: the constraint's number in the file, "
-      "its kind, and "
-      "its pair of submaps.",
+      "Assumes that the map is right, adds wrong inter-submap constraints, and "
+      "optimises, so that the map is distorted as Cartographer's would be. "
+      "--wrong_constraints lists them: the constraint's index in the file, its "
+      "kind, and the number of its pair.",
       {"input", "output", "wrong_constraints"},
       {"kinds", "pairs", "seed", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// `figures`: the pictures of the paper, of any map.
+// `figures`: the pictures of the paper, for any map.
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ DECLARE_string(matches);
 DECLARE_string(method);
 
 DEFINE_string(submap, "",
-              "The submap whose features are drawn, by trajectory,index; if "
-              "empty, the first of those with the most features.");
+              "Submap to draw, as trajectory,index; if empty, the first of "
+              "those with the most features.");
 DEFINE_int32(figure_pixels, 700, "Longer side of the pictures [pixels].");
 
 namespace cartographer_sdf {
@@ -73,11 +73,11 @@ std::optional<DescribedGrid> DescribeGrid(const PlaceOptions& options,
   return described;
 }
 
-// Names of files and what is in them.
+// Names and contents of files.
 using Pictures = std::vector<std::pair<std::string, std::string>>;
 
-// A strong one in free space, of the middle of a room: the strongest maximum
-// whose window holds no wall, or else the strongest of all.
+// Chooses a strong feature in the middle of a room: the strongest maximum whose
+// window holds no wall, or else the strongest feature.
 size_t ChooseFeature(const DescriptorOptions& options,
                      const FeatureSet& features) {
   const auto rank = [&options](const Feature& feature) {
@@ -126,8 +126,8 @@ Pictures DrawSubmap(const PlaceOptions& options, const DescribedGrid& submap) {
   return pictures;
 }
 
-// Of two maps the best of the accepted matches, of one map the accepted one of
-// submaps farthest apart in time.
+// Chooses the accepted match of submaps farthest apart along one trajectory, or
+// the best accepted match of two maps.
 absl::StatusOr<MatchRow> ChooseMatch() {
   absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(FLAGS_matches);
   if (!matches.ok()) return matches.status();
@@ -152,7 +152,7 @@ absl::StatusOr<MatchRow> ChooseMatch() {
                            });
 }
 
-// A map with all of its grids.
+// A map with all its grids.
 struct LoadedMap {
   MapState state;
   std::map<SubmapId, OccupancyGrid> grids;
@@ -206,8 +206,8 @@ absl::StatusOr<Match> MatchPair(const LoopClosingOptions& stages,
   return *std::move(match);
 }
 
-// Within one map, both lie where the map has them: the lines show by how much
-// it is off. Another session is put where the match says.
+// Within one map, both submaps keep their poses in the map: the lines show the
+// map's error. A submap of another map is placed by the match.
 Picture DrawPairOnMap(const FieldOptions& field, const LoadedMap& map,
                       const LoadedMap& query_map, const Match& match) {
   const PoseGraph& pose_graph = map.state.pose_graph;
@@ -338,20 +338,21 @@ absl::Status RunFigures() {
 Subcommand Figures() {
   return Subcommand{
       "figures",
-      "pictures of a map's features, and of a match",
+      "draw a map's features, and a match",
       "--input A.pbstream [--query B.pbstream] [--submap 0,12] "
       "[--matches M.csv] --output DIR",
       "Draws one submap: its probability grid (grid.png) and distance field "
       "(field.png, with keypoints in keypoints.png, as a surface in "
-      "surface.png), where features within some distance of walls may lie "
-      "(mask_*.png), and one feature: where it is (feature_location.png), the "
-      "weighted gradients around it (feature_window.png) and its descriptor "
+      "surface.png), the areas within some distances of walls (mask_*.png), "
+      "and one feature: its location (feature_location.png), the weighted "
+      "gradients around it (feature_window.png) and its descriptor "
       "(feature_histogram.svg). Maxima are red, saddles green, minima "
       "yellow.\n\n"
-      "With --matches, also one match, of two maps the best, of one map the "
-      "one of submaps farthest apart in time: both submaps on the map with the "
-      "paths of the robot (match_map.png; reference blue, query red, "
-      "features that agree black) and laid over each other (match_pair.png).",
+      "With --matches, also draws one accepted match (with --query, the best; "
+      "otherwise that of submaps farthest apart along one trajectory): both "
+      "submaps on the map with the paths of the robot (match_map.png; "
+      "reference blue, query red, features that agree black) and laid over "
+      "each other (match_pair.png).",
       {"input", "output"},
       {"query", "submap", "matches", "method", "figure_pixels",
        "configuration_directory", "configuration_basename"},

@@ -12,44 +12,42 @@
 #include "absl/strings/str_split.h"
 #include "cartographer_sdf/tools/subcommand.h"
 
-DEFINE_string(input, "", "The map to read, a .pbstream of Cartographer 2D.");
+DEFINE_string(input, "", "Map to read, a .pbstream of Cartographer 2D.");
 DEFINE_string(
     map, "",
-    "relocalize: the map in which to look, a .pbstream. simulate: the "
-    "floor plan to drive through, a PGM with dark walls; an office is "
-    "invented if empty. cartographer_sdf_run_log: a frozen map to localise in, "
-    "a .pbstream.");
-DEFINE_string(query, "",
-              "Another map, whose submaps are searched in those of --input or "
-              "--map. In match, none if empty: the submaps of --input in each "
-              "other.");
-DEFINE_string(output, "", "The file to write.");
+    "relocalize: map to search in, a .pbstream. simulate: floor plan to drive "
+    "through, a PGM with dark walls; if empty, a random office. "
+    "cartographer_sdf_run_log: frozen map to localise in, a .pbstream.");
+DEFINE_string(
+    query, "",
+    "Second map, whose submaps are searched for in --input or --map. In match, "
+    "if empty, the submaps of --input are matched with each other.");
+DEFINE_string(output, "", "File to write (figures: directory).");
 DEFINE_string(places, "",
-              "A file beside the map (--input of match, --map) that holds what "
-              "its submaps look like: read instead of describing them again, "
-              "made where there is none or where it is of another map or other "
-              "options.");
+              "File that caches the descriptions of the submaps of --input "
+              "(match) or --map, so that later runs start faster. Written if "
+              "it is missing or was made for another map or other options.");
 DEFINE_string(
     truth, "",
-    "True poses, lines of kind,trajectory,index,x,y,yaw: read by evaluate, "
-    "written by simulate.");
+    "File of true poses, with lines of kind,trajectory,index,x,y,yaw: read by "
+    "evaluate, written by simulate.");
 DEFINE_string(report, "",
-              "Directory for a report as an HTML page (index.html); made where "
-              "it is missing. None if empty.");
+              "Directory for an HTML report (index.html), made if it is "
+              "missing. No report if empty.");
 DEFINE_string(configuration_directory, "",
               "Directories of configuration files, separated by commas, "
-              "searched before those that come with the program.");
+              "searched before those installed with the program.");
 DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
-              "The configuration file; it may include others.");
+              "Name of the configuration file; it may include others.");
 DEFINE_string(frozen_trajectories, "",
-              "Trajectories that stay where they are, by their numbers, "
+              "Numbers of the trajectories that optimisation must not move, "
               "separated by commas.");
 DEFINE_double(seconds_per_scan, 0.1,
-              "Time between the scans of a recording without a clock [s]: scan "
-              "i has the stamp 1e9 + i * this in the map.");
+              "Time between scans of a recording without a clock [s]: scan i "
+              "has the time stamp 1e9 + i * this in the map.");
 DEFINE_int32(threads, 0,
-             "Number of threads; 0 for as many as the machine has. The result "
-             "does not depend on it.");
+             "Number of threads; 0: as many as the machine supports. The "
+             "result does not depend on it.");
 
 namespace cartographer_sdf {
 namespace {
@@ -77,7 +75,7 @@ absl::StatusOr<Options> LoadOptionsOfFlags() {
 }
 
 absl::Status CheckConfigurationDirectories() {
-  // Else a misspelt one would be passed over for the defaults.
+  // Otherwise a misspelt directory would silently yield the defaults.
   for (const std::string& directory : GivenDirectories()) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) {

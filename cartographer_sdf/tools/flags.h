@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Flags that several subcommands share, and what they mean.
+// Flags that several subcommands share, and their interpretation.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
 #define CARTOGRAPHER_SDF_TOOLS_FLAGS_H_
@@ -29,23 +29,24 @@ DECLARE_int32(threads);
 
 namespace cartographer_sdf {
 
-// Where configuration files are looked for: first in those of
-// --configuration_directory, then where the program was built and installed.
+// Directories to search for configuration files: first those of
+// --configuration_directory, then those where the program was built and
+// installed.
 [[nodiscard]] std::vector<std::string> ConfigurationDirectories();
 
-// An error where a directory of --configuration_directory does not exist.
+// An error if a directory of --configuration_directory does not exist.
 [[nodiscard]] absl::Status CheckConfigurationDirectories();
 
-// As of --configuration_directory and --configuration_basename.
+// From --configuration_directory and --configuration_basename.
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
 
-// As of --report.
+// From --report.
 [[nodiscard]] ReportRequest ReportRequestOfFlags(const Options& options);
 
-// As of --threads; at least 1.
+// From --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();
 
-// As of --frozen_trajectories.
+// From --frozen_trajectories.
 [[nodiscard]] absl::StatusOr<std::set<int>> FrozenTrajectoriesOfFlags();
 
 }  // namespace cartographer_sdf

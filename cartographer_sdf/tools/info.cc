@@ -18,14 +18,14 @@
 #include "gflags/gflags.h"
 
 DEFINE_bool(torn_submaps, false,
-            "Look for submaps that local SLAM tore inside too: reads all "
-            "scans, some seconds for a hundred submaps.");
+            "Also look for submaps that local SLAM tore; reads all scans, "
+            "which takes some seconds for a hundred submaps.");
 
 namespace cartographer_sdf {
 namespace {
 
-// Lines about the torn submaps. The options are read only here: what a map
-// holds can be told without.
+// Lines about the torn submaps. Only they need the options; a map's contents
+// can be described without.
 absl::StatusOr<std::string> DescribeTornSubmaps(
     const MapState& state, const std::map<NodeId, PointCloud2>& scans,
     StageProgress* const progress) {
@@ -70,11 +70,11 @@ absl::Status RunInfo() {
 Subcommand Info() {
   return Subcommand{
       "info",
-      "what is in a map",
+      "describe the contents of a map",
       "--input A.pbstream [--torn_submaps]",
-      "Prints format, trajectories, submaps, constraints and records of a "
-      "serialized state of Cartographer 2D, and on demand which submaps "
-      "contradict themselves. Nothing is changed.",
+      "Prints the format, trajectories, submaps, constraints and records of a "
+      "map of Cartographer 2D and, with --torn_submaps, the submaps that local "
+      "SLAM tore. Does not change the map.",
       {"input"},
       {"torn_submaps", "configuration_directory", "configuration_basename",
        "threads"},

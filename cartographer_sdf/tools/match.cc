@@ -24,29 +24,28 @@
 
 DEFINE_string(
     method, "",
-    "sdf, paper or shape_context; if empty, that of the configuration "
-    "file. paper reads paper.lua, shape_context shape_context.lua, "
-    "unless --configuration_basename is given.");
+    "sdf, paper or shape_context; if empty, the method in the configuration "
+    "file. Unless --configuration_basename is given, paper reads paper.lua and "
+    "shape_context reads shape_context.lua.");
 DEFINE_string(options_in_force, "",
-              "The file to write all options to that the matches were made "
-              "with, as Lua.");
+              "File to write all options in force to, as Lua.");
 DEFINE_string(terms, "",
-              "The file to write the terms of every pair's score to. Only "
+              "CSV file to write the terms of every pair's score to. Only for "
               "method sdf.");
 DEFINE_string(neighbour_terms, "",
-              "The file to write the terms of every pair's score in its "
-              "neighbourhood to. Only method sdf, not with --alone.");
+              "CSV file to write the terms of every pair's neighbourhood score "
+              "to. Only for method sdf, not with --alone.");
 DEFINE_bool(alone, false,
-            "Judge each pair of submaps by itself, without its neighbours. "
-            "Only method sdf.");
+            "Verify each pair of submaps by itself, without its neighbours. "
+            "Only for method sdf.");
 DEFINE_bool(agree, false,
-            "Whether accepted matches must agree with each other, as in "
-            "close_loops. Only method sdf.");
+            "Accept only matches that agree with each other, as in "
+            "close_loops. Only for method sdf.");
 
 DEFINE_bool(retrieval, false,
-            "Match only those pairs of submaps that an index of all features "
+            "Match only the pairs of submaps that an index of all features "
             "proposes, whatever use_retrieval says: much faster on large maps, "
-            "at the price of some pairs.");
+            "but misses some pairs.");
 
 namespace cartographer_sdf {
 namespace {
@@ -85,7 +84,7 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
                                       on_progress);
   }
   const LoopClosingOptions& stages = method.options.loop_closing;
-  // --places is of the map, not of the query.
+  // --places applies to the map, not to the query.
   if (path == FLAGS_input) {
     return DescribeMapOfFlags(stages, path, executor, PointClouds::kDrop,
                               on_progress);
@@ -108,7 +107,7 @@ absl::StatusOr<std::vector<DescribedMap>> DescribeMaps(
   return maps;
 }
 
-// Takes back the acceptance of rows whose matches the others do not support.
+// Revokes the acceptance of rows whose matches the others do not support.
 void RefuseInconsistent(const ConsistencyOptions& options,
                         const std::vector<DescribedMap>& maps,
                         const std::vector<Match>& matches,
@@ -134,7 +133,7 @@ void RefuseInconsistent(const ConsistencyOptions& options,
   }
 }
 
-// The tables that the flags ask for.
+// Writes the tables that the flags ask for.
 absl::Status WriteTables(const MethodOptions& method,
                          const std::vector<Match>& matches,
                          const std::vector<MatchRow>& rows) {
@@ -198,22 +197,22 @@ absl::Status RunMatch() {
 Subcommand MatchSubcommand() {
   return Subcommand{
       "match",
-      "the submaps of one or two maps that show the same place",
+      "find submaps of one or two maps that see the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
       "[--method sdf|paper|shape_context] [--retrieval] [--places P.places] "
       "[--alone] [--agree]",
       "Matches every pair of submaps without a pose prior and writes the best "
-      "pose of each pair for which there is one, accepted or not, with its "
-      "evidence. Nothing is optimised.\n\n"
+      "pose of each pair that has one, accepted or not, with its evidence. "
+      "Does not optimise the map.\n\n"
       "The columns x, y, yaw are the pose of the query submap in the frame of "
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
       "log-odds of being right; paper and shape_context: number of "
       "inliers).\n\n"
-      "Each pair is judged together with the neighbours of both submaps on "
+      "Each pair is verified together with the neighbours of both submaps on "
       "their trajectories; with --alone, by itself.\n\n"
-      "With --agree, an accepted match that weightier ones contradict by the "
-      "odometry between them, or that is uncertain and stands alone, is "
-      "accepted no more, and its verdict says which.",
+      "With --agree, a match is no longer accepted if matches with more weight "
+      "contradict it through the odometry between them, or if it is uncertain "
+      "and no other supports it. Its verdict gives the reason.",
       {"input", "output"},
       {"query", "method", "retrieval", "places", "alone", "agree", "terms",
        "neighbour_terms", "options_in_force", "configuration_directory",

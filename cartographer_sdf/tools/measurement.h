@@ -13,18 +13,18 @@
 
 namespace cartographer_sdf {
 
-// A line of a result: what was measured, and the numbers by name. A number that
-// does not exist is absent. Neither has commas.
+// A line of a result: its subject, and named numbers, which may be absent.
+// Neither subject nor names have commas.
 struct Measurement {
   std::string subject;
   std::vector<std::pair<std::string, std::optional<double>>> numbers;
 };
 
-// Measurements of the same numbers that follow each other share a table.
+// Consecutive measurements of the same numbers share a table.
 [[nodiscard]] std::string FormatMeasurements(
     const std::vector<Measurement>& measurements);
 
-// CSV with the columns subject, quantity, value; to nine digits.
+// CSV with the columns subject, quantity, value. Values have nine digits.
 [[nodiscard]] absl::Status WriteMeasurements(
     const std::string& path, const std::vector<Measurement>& measurements);
 

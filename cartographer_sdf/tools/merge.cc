@@ -19,7 +19,7 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(inputs, "", "The maps to merge, separated by commas.");
+DEFINE_string(inputs, "", "Maps to merge, separated by commas.");
 DECLARE_string(result);
 
 namespace cartographer_sdf {
@@ -61,8 +61,8 @@ absl::StatusOr<std::vector<std::string>> InputsOfFlags() {
   return inputs;
 }
 
-// The files that the flags ask for; a refusal is an error, but one with a
-// report.
+// Writes the files that the flags ask for. A refusal is an error, but still
+// writes the report.
 absl::Status WriteFiles(const Options& options, const MergingResult& result,
                         StageProgress* const progress) {
   absl::Status status;
@@ -107,19 +107,19 @@ absl::Status RunMerge() {
 Subcommand MergeSubcommand() {
   return Subcommand{
       "merge",
-      "one map from several of the same building",
+      "merge several maps of the same building into one",
       "--inputs A.pbstream,B.pbstream,... --output M.pbstream "
       "[--result R.json] [--report DIR]",
-      "Finds where the maps lie in each other, in any order and without a pose "
+      "Localises the maps in each other, in any order and without a pose "
       "prior; adds the closures between them and within each; optimises, with "
-      "the odometry weights that each map shows; and writes one map that "
+      "odometry weights inferred from each map; and writes one map that "
       "Cartographer's own tools load. Trajectories are numbered in the order "
       "of the inputs; assets_writer takes one bag for each, in that order. All "
       "nodes, times and sensor data are kept.\n\n"
-      "The largest group of maps that are connected is merged, in the frame of "
-      "its first; others are reported. Where nothing is connected, or the "
-      "merged map would be folded, nothing is written.\n\n"
-      "--frozen_trajectories, of the first map, stay where they are.",
+      "Merges the largest group of connected maps, in the frame of its first, "
+      "and reports the other maps. Writes no map if none are connected, or if "
+      "the merged map would be folded.\n\n"
+      "--frozen_trajectories refers to the first map.",
       {"inputs", "output"},
       {"result", "report", "frozen_trajectories", "configuration_directory",
        "configuration_basename", "threads"},

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The methods that `match` and `evaluate` know, by name, and their options.
+// The methods of `match` and `evaluate`, by name, and their options.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_METHOD_OPTIONS_H_
 #define CARTOGRAPHER_SDF_TOOLS_METHOD_OPTIONS_H_
@@ -16,19 +16,19 @@ namespace cartographer_sdf {
 
 struct MethodOptions {
   Options options;
-  // Only where `describes_clouds`.
+  // Only used if `describes_clouds`.
   CloudPlaceOptions shape_context;
-  // Whether places are described by shape contexts of point clouds, and not by
-  // features of the distance field; matching is then that of the paper.
+  // Whether places are described by shape contexts of point clouds, not by
+  // features of the distance field; matching then follows the paper.
   bool describes_clouds = false;
 };
 
-// All options that are in force, as Lua.
+// All options in force, as Lua.
 [[nodiscard]] std::string FormatOptions(const MethodOptions& options);
 
-// Of "sdf", "paper", "shape_context", or, for an empty name, of what the
-// configuration file says. paper and shape_context read the file that is called
-// as they are, unless --configuration_basename is given.
+// Loads the options of "sdf", "paper", "shape_context", or, for an empty name,
+// of the method in the configuration file. paper and shape_context read the
+// configuration file of their name, unless --configuration_basename is given.
 [[nodiscard]] absl::StatusOr<MethodOptions> LoadOptionsOfMethod(
     const std::string& method);
 

@@ -22,7 +22,7 @@ constexpr double kSecondsBeforeDrawing = 1.;
 constexpr double kSecondsBetweenDrawings = 0.1;
 constexpr int kBarWidth = 30;
 constexpr int kDefaultWidth = 80;
-// Before, the estimate of the time left jumps.
+// Earlier, the estimate of the time left fluctuates.
 constexpr double kMinFractionForEstimate = 0.02;
 constexpr double kMaxSecondsLeft = 100. * 3600.;
 // To the beginning of the line, and erase it.

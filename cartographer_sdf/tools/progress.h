@@ -14,19 +14,19 @@
 
 namespace cartographer_sdf {
 
-// E.g. "match [=====>     ]  45 %, 12 s left", at most `width` characters. How
-// long it will take is told where it can be known.
+// E.g. "match [=====>     ]  45 %, 12 s left", at most `width` characters.
+// Includes the time left once it can be estimated.
 [[nodiscard]] std::string FormatProgress(const std::string& stage,
                                          double fraction,
                                          double elapsed_seconds, int width);
 
-// A line on the terminal that says how far a stage is, once it takes longer
-// than a second; gone when the object is. Where stderr is no terminal, nothing.
-// Thread-safe.
+// A line on the terminal that shows the progress of a stage once it takes
+// longer than a second; the destructor removes it. Shows nothing if stderr is
+// not a terminal. Thread-safe.
 class Progress {
  public:
   explicit Progress(const std::string& stage);
-  // `terminal` may be null; `seconds` is a clock that does not go back.
+  // `terminal` may be null; `seconds` is a monotonic clock.
   Progress(const std::string& stage, std::ostream* terminal, int width,
            std::function<double()> seconds);
   Progress(const Progress&) = delete;
@@ -34,11 +34,11 @@ class Progress {
   ~Progress();
 
   void Update(double fraction);
-  // For those who take a std::function; not to be used after this object.
+  // Update as a std::function; must not outlive this object.
   [[nodiscard]] ProgressCallback Callback() {
     return [this](const double fraction) { Update(fraction); };
   }
-  // Since the beginning.
+  // Time since construction.
   [[nodiscard]] double ElapsedSeconds() const;
 
  private:
@@ -56,12 +56,12 @@ class Progress {
 // A progress line for one stage after the other.
 class StageProgress {
  public:
-  // Not to be used after this object.
+  // Must not outlive this object.
   [[nodiscard]] StageCallback Callback() {
     return [this](const std::string& stage) { return Begin(stage); };
   }
   [[nodiscard]] ProgressCallback Begin(const std::string& stage) {
-    // The line of the stage before goes first.
+    // Removes the line of the previous stage first.
     progress_.reset();
     progress_ = std::make_unique<Progress>(stage);
     return progress_->Callback();

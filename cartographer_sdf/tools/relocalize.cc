@@ -23,18 +23,18 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(result, "", "The JSON file for the result. None if empty.");
+DEFINE_string(result, "", "JSON file to write the result to. None if empty.");
 DEFINE_double(first_seconds, 0.,
-              "Only this much of each trajectory of the query, as if it had "
-              "just been driven: places are made of its scans. [s]");
+              "Use only this duration of each trajectory of the query, as if "
+              "it had just been driven: places are made from its scans. [s]");
 DEFINE_double(start_seconds, 0.,
-              "Where --first_seconds begin, from the beginning of each "
-              "trajectory on. [s]");
+              "Time from the beginning of each trajectory at which "
+              "--first_seconds starts. [s]");
 
-DEFINE_int32(num_starts, 1,
-             "So many windows of --first_seconds, evenly spaced along the "
-             "query: from where on could it be localized? --result is then a "
-             "list.");
+DEFINE_int32(
+    num_starts, 1,
+    "Number of windows of --first_seconds, evenly spaced along the query, to "
+    "localise separately. With this flag, --result is a list.");
 
 namespace cartographer_sdf {
 namespace {
@@ -77,7 +77,7 @@ absl::Status CheckNumStarts() {
   return absl::OkStatus();
 }
 
-// One line and one entry of the result for each window.
+// Prints one line and adds one entry to the result for each window.
 absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
                            StageProgress* const progress) {
   const Options& options = task.options;
@@ -155,7 +155,7 @@ void PrintSummary(const Localization& result) {
   }
 }
 
-// The files that the flags ask for.
+// Writes the files that the flags ask for.
 absl::Status WriteFiles(const MapTask& task, const Session& map,
                         const Session& query, const Localization& result,
                         StageProgress* const progress) {
@@ -174,7 +174,7 @@ absl::Status WriteFiles(const MapTask& task, const Session& map,
   return status;
 }
 
-// The query as a whole, or in one window.
+// Localises the whole query, or one window of it.
 absl::Status RunOnce(const MapTask& task,
                      const std::optional<TimeWindow>& window, DescribedMap map,
                      StageProgress* const progress) {
@@ -185,7 +185,7 @@ absl::Status RunOnce(const MapTask& task,
   if (!query.ok()) return query.status();
   LocalizationOptions localization = options.localization;
   if (!FLAGS_output.empty()) {
-    // Every match is of use.
+    // Every match may contribute.
     localization.num_first_places = std::numeric_limits<int>::max();
     localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
   }
@@ -228,17 +228,17 @@ absl::Status RunRelocalize() {
 Subcommand RelocalizeSubcommand() {
   return Subcommand{
       "relocalize",
-      "where a map, or a drive's start, lies in a map",
+      "find a map, or the start of a drive, in a map",
       "--map A.pbstream --query B.pbstream [--first_seconds N] "
       "[--result R.json] [--output M.pbstream] [--report DIR]",
-      "Searches every submap of the query in the map, without a pose prior. "
-      "The matches vote, and a pose is reported only where it is certain; else "
-      "the result is \"localized\": false with the reason, and the exit code "
-      "still 0. T_map_query is the pose of the query's map frame in the map "
-      "frame [m, rad].\n\n"
-      "With --output, both maps as one: that of --map stays where it is, the "
-      "query is attached and optimised. That it is not localized is an error "
-      "then.",
+      "Searches for every submap of the query in the map, without a pose "
+      "prior. The matches vote, and a pose is reported only if it is certain; "
+      "otherwise the result is \"localized\": false with the reason, and the "
+      "exit code is still 0. T_map_query is the pose of the query's map frame "
+      "in the map frame [m, rad].\n\n"
+      "With --output, writes both maps as one: the query is attached to the "
+      "map of --map, which does not move, and optimised. It is then an error "
+      "if the query is not localized.",
       {"map", "query"},
       {"first_seconds", "start_seconds", "num_starts", "result", "output",
        "report", "places", "configuration_directory", "configuration_basename",

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// cartographer_sdf_run_log: the way to try the searcher without ROS.
+// cartographer_sdf_run_log: runs the searcher without ROS.
 
 #include <unistd.h>
 
@@ -25,25 +25,24 @@
 #include "gflags/gflags.h"
 #include "glog/logging.h"
 
-DEFINE_string(log, "", "The recording, a CARMEN log, plain or gzip.");
+DEFINE_string(log, "", "Recording to run, a CARMEN log, plain or gzip.");
 DEFINE_string(
     configuration_directories, "",
     "Directories of configuration files, separated by commas, searched before "
-    "those that come with this program and with Cartographer.");
-DEFINE_string(
-    sdf_configuration_basename, "sdf_live.lua",
-    "The searcher's configuration file. If empty, Cartographer runs alone.");
-DEFINE_double(start, 0., "Seconds of the recording to leave out.");
-DEFINE_double(duration, 0.,
-              "Seconds of the recording to drive; 0 for all that there are.");
+    "those installed with this program and with Cartographer.");
+DEFINE_string(sdf_configuration_basename, "sdf_live.lua",
+              "Name of the searcher's configuration file. If empty, "
+              "Cartographer runs alone.");
+DEFINE_double(start, 0., "Time to skip at the beginning of the recording [s].");
+DEFINE_double(duration, 0., "Time of the recording to use [s]; 0: all of it.");
+DEFINE_double(real_time_factor, 0.,
+              "Speed relative to real time; 1: real time, 0: as fast as "
+              "Cartographer and the searcher can.");
 DEFINE_double(
-    real_time_factor, 0.,
-    "Seconds of the recording that pass in one; 1 for real time. 0 for as fast "
-    "as Cartographer and the searcher can.");
-DEFINE_double(field_of_view, 0.,
-              "Of the laser [degrees]. 0 for the usual one of so many beams: "
-              "180 for 180, 181 and 360 beams, 270 for others.");
-DEFINE_bool(verbose, false, "Whether what Cartographer logs is shown.");
+    field_of_view, 0.,
+    "Field of view of the laser [degrees]. 0: derived from the number of "
+    "beams, 180 for 180, 181 and 360 beams, 270 for others.");
+DEFINE_bool(verbose, false, "Whether to show Cartographer's log.");
 
 namespace cartographer_sdf {
 namespace {
@@ -51,8 +50,8 @@ namespace {
 constexpr char kProgram[] = "cartographer_sdf_run_log";
 constexpr size_t kMaxMessageLength = 400;
 
-// Cartographer stops the process where something is wrong with its files: that
-// is the world at fault, to be told in one line, and no reason for a core dump.
+// Cartographer aborts the process if something is wrong with its files. Such
+// errors deserve one line, not a core dump.
 class MessageSink : public google::LogSink {
  public:
   void send(const google::LogSeverity severity, const char* const,
@@ -166,7 +165,7 @@ absl::Status RunLogOfFlags() {
   if (FLAGS_report.empty() || options->output_path) {
     return RunAndReport(*recording, *options);
   }
-  // The report draws the map of a file: one of its own.
+  // The report draws the map from a file: a temporary one.
   options->output_path = (std::filesystem::temp_directory_path() /
                           absl::StrCat(kProgram, "-", getpid(), ".pbstream"))
                              .string();
@@ -179,15 +178,16 @@ absl::Status RunLogOfFlags() {
 Subcommand RunLogCommand() {
   return Subcommand{
       "",
-      "drive a recording through Cartographer with the searcher around it",
-      "--log drive.log.gz --configuration_basename run_log_mapping.lua "
+      "run a recording through Cartographer and the searcher",
+      "--log drive.log.gz --configuration_basename cartographer_mapping.lua "
       "[--map A.pbstream] [--output B.pbstream] [--report DIR]",
-      "A stock Cartographer gets the laser, odometry and yaw rates of the log, "
-      "as from a robot; between sparse scans, odometry and yaw rates are "
-      "interpolated. The searcher recognises places and adds constraints; with "
-      "--map it locates the robot in a frozen map.\n\n"
-      "The summary goes to the standard output, the map to --output. --report "
-      "gets index.html to read, run.json and nodes.csv for programs.",
+      "A stock Cartographer gets the laser scans, odometry and yaw rates of "
+      "the log, as from a robot; between sparse scans, odometry and yaw rates "
+      "are interpolated. The searcher recognises places and adds constraints; "
+      "with --map it localises the robot in a frozen map.\n\n"
+      "Prints a summary to the standard output and writes the map to --output. "
+      "--report gets index.html to read, and run.json and nodes.csv for "
+      "programs.",
       {"log", "configuration_basename"},
       {"configuration_directories", "sdf_configuration_basename", "map",
        "output", "report", "start", "duration", "real_time_factor",
@@ -202,7 +202,7 @@ Subcommand RunLogCommand() {
 int main(int argc, char** argv) {
   cartographer_sdf::KeepFreedMemory();
   google::InitGoogleLogging(argc > 0 ? argv[0] : cartographer_sdf::kProgram);
-  // All messages go to the sink alone, none to files.
+  // All messages go only to the sink, not to files.
   FLAGS_stderrthreshold = google::NUM_SEVERITIES;
   for (int severity = 0; severity < google::NUM_SEVERITIES; ++severity) {
     google::SetLogDestination(severity, "");

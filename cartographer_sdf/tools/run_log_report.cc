@@ -23,7 +23,7 @@ constexpr Color kClosureColor{0.84, 0.15, 0.16, 0.55};
 constexpr int kMaxPixels = 2400;
 constexpr double kMilliseconds = 1e3;
 
-// Nearest rank; 0 of nothing.
+// Nearest rank; 0 if there are no values.
 double Quantile(std::vector<double> values, const double fraction) {
   if (values.empty()) return 0.;
   std::sort(values.begin(), values.end());
@@ -40,7 +40,7 @@ int NumInjected(const LogRunResult& result) {
                     }));
 }
 
-// The first node that a constraint bound to the frozen map; null if none.
+// The first node that a constraint connected to the frozen map; null if none.
 const NodeMoment* FirstConnected(const LogRunResult& result) {
   for (const NodeMoment& node : result.nodes) {
     if (node.is_connected) return &node;
@@ -163,7 +163,7 @@ std::string NodesCsv(const LogRunResult& result) {
   return csv;
 }
 
-// Names and what is to be said of them.
+// Names and values of the summary.
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
 Rows RunRows(const LogRunResult& result) {
@@ -290,7 +290,7 @@ absl::Status WriteRunReport(const std::string& directory,
   ReportContent content;
   content.title = "Run of " + FileName(log);
   content.subtitle = result.summary.has_value()
-                         ? "Cartographer with the searcher around it."
+                         ? "Cartographer with the searcher."
                          : "Cartographer alone.";
   content.summary = SummaryRows(result);
   content.closures = ReportedClosures(result.closures);
@@ -300,13 +300,13 @@ absl::Status WriteRunReport(const std::string& directory,
   report.map_picture_pixels = kMaxPixels;
   report.max_closure_pictures = 0;
   absl::Status status = DrawPictures(
-      {{"The map at the end; closures of the searcher in red", &*state,
+      {{"The final map; closures of the searcher in red", &*state,
         &state->pose_graph, /*shows_links=*/true}},
       [&map](const SubmapCallback& on_submap) {
         return ReadMap(map, {on_submap, {}}).status();
       },
       report, &content);
-  // Makes the directory, too.
+  // Also makes the directory.
   if (status.ok()) status = WriteReport(directory, content);
   const std::filesystem::path path(directory);
   if (status.ok()) {

@@ -16,9 +16,9 @@ namespace cartographer_sdf {
 
 // `directory` gets
 // - run.json: all numbers, see docs/live.md;
-// - nodes.csv: what was believed when each node was made;
+// - nodes.csv: the pose estimate when each node was made;
 // - index.html: the final map with closures, and charts. Reads the grids of
-//   `map`, the map at the end.
+//   `map`, the final map.
 [[nodiscard]] absl::Status WriteRunReport(const std::string& directory,
                                           const std::string& log,
                                           const std::string& map,

@@ -13,35 +13,41 @@
 #include "gflags/gflags.h"
 
 DEFINE_double(map_resolution, 0.05, "Side of a pixel of --map [m].");
-DEFINE_uint32(plan_seed, 1, "Of the office that is invented.");
-DEFINE_double(plan_width, 40., "Of the office that is invented [m].");
-DEFINE_double(plan_height, 30., "Of the office that is invented [m].");
-DEFINE_double(plan_wall_thickness, 0.15, "Of the office that is invented [m].");
-DEFINE_double(plan_furniture, 0.14,
-              "Pieces per square metre of room of the office that is "
-              "invented.");
+DEFINE_uint32(plan_seed, 1, "Random seed of the random office.");
+DEFINE_double(plan_width, 40., "Width of the random office [m].");
+DEFINE_double(plan_height, 30., "Height of the random office [m].");
+DEFINE_double(plan_wall_thickness, 0.15,
+              "Wall thickness of the random office [m].");
+DEFINE_double(
+    plan_furniture, 0.14,
+    "Pieces of furniture per square metre of room in the random office.");
 DEFINE_double(glass_fronts, 0.,
-              "Fraction of the rooms of the invented office whose wall to the "
-              "corridor is of glass.");
-DEFINE_double(glass_echo, 0.3, "Fraction of the beams that glass returns.");
+              "Fraction of the rooms of the random office whose wall to the "
+              "corridor is glass.");
+DEFINE_double(glass_echo, 0.3,
+              "Fraction of the beams on glass that return from it.");
 DEFINE_double(open_tables, 0.,
-              "Fraction of the tables of the invented office that are seen as "
-              "four legs.");
-DEFINE_int32(walking_people, 0, "Who walk through the building all the time.");
+              "Fraction of the tables in the random office of which the lidar "
+              "sees only the four legs.");
+DEFINE_int32(walking_people, 0,
+             "Number of people who walk through the building all the time.");
 DEFINE_int32(standing_people, 0,
-             "Who stand somewhere for two minutes, and then elsewhere.");
-DEFINE_double(lidar_range, 20., "Echoes from farther away are lost [m].");
-DEFINE_double(lidar_field_of_view, 270., "About the way ahead [deg].");
-DEFINE_double(length, 360., "How far the robot drives [m].");
+             "Number of people who stand in one place for two minutes, then in "
+             "another.");
+DEFINE_double(lidar_range, 20.,
+              "Range of the lidar [m]; farther echoes are lost.");
+DEFINE_double(
+    lidar_field_of_view, 270.,
+    "Field of view of the lidar, centred on the direction of travel [deg].");
+DEFINE_double(length, 360., "Length of the drive [m].");
 DEFINE_uint32(seed, 1,
-              "Of what is random: in simulate the drive, its drift and the "
-              "noise, so that two sessions in one building differ in it "
-              "alone.");
+              "Random seed. In simulate, of the drive, its drift and the "
+              "noise: two sessions in one building differ only in this seed.");
 
 namespace cartographer_sdf {
 namespace {
 
-// That of --map, or an invented office.
+// The plan of --map, or a random office.
 absl::StatusOr<FloorPlan> PlanOfFlags() {
   if (!FLAGS_map.empty()) return ReadPgm(FLAGS_map, FLAGS_map_resolution);
   OfficeOptions office;
@@ -85,11 +91,11 @@ absl::Status RunSimulate() {
 Subcommand SimulateSubcommand() {
   return Subcommand{
       "simulate",
-      "make a map with unclosed loops, and its truth",
+      "make a map with unclosed loops and its true poses",
       "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N]",
       "Drives a robot with a ray-cast lidar and drifting odometry through a "
-      "building and writes what Cartographer would have saved without loop "
-      "closing, and the true poses of its submaps and nodes.",
+      "building. Writes the map that Cartographer would have saved without "
+      "loop closing, and the true poses of its submaps and nodes.",
       {"output", "truth"},
       {"map", "map_resolution", "plan_seed", "plan_width", "plan_height",
        "plan_wall_thickness", "plan_furniture", "glass_fronts", "glass_echo",

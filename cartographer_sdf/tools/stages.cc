@@ -17,10 +17,10 @@ absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
   absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
   if (options->loop_closing.recognition.match.method != Method::kSdf) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        subcommand,
-        " needs match.method = \"sdf\": the number of inliers is no "
-        "verification"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(subcommand,
+                     " needs match.method = \"sdf\": counting inliers does not "
+                     "verify a match"));
   }
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// What the subcommands that work on maps share.
+// Stages that the subcommands on maps share.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_STAGES_H_
 #define CARTOGRAPHER_SDF_TOOLS_STAGES_H_
@@ -22,34 +22,34 @@
 
 namespace cartographer_sdf {
 
-// What is to be done to maps, as of the flags.
+// What the flags specify for a task on maps.
 struct MapTask {
   Options options;
   Executor executor;
   std::set<int> frozen_trajectories;
 };
 
-// An error where the configured method verifies nothing.
+// An error if the configured method does not verify matches.
 [[nodiscard]] absl::StatusOr<MapTask> MapTaskOfFlags(
     const std::string& subcommand);
 
-// The map with its places: from the file of --places, if it is given, or
-// described, and then left there.
+// Returns the map with its places. With --places, reads them from that file if
+// it fits; otherwise describes them and writes the file.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapOfFlags(
     const LoopClosingOptions& options, const std::string& path,
     const Executor& executor, PointClouds point_clouds,
     const ProgressCallback& on_progress);
 
-// Reads --input once: for --output, where it is to have `pose_graph`, and for
-// --report, which is made by `write_report`. The map appears last: it stands
-// for all having gone well.
+// Reads --input once, for --output, which gets `pose_graph`, and for --report,
+// which `write_report` makes. Writes the map last, so that its existence shows
+// that everything succeeded.
 [[nodiscard]] absl::Status WriteMapAndReport(
     const PoseGraph& pose_graph,
     const std::function<absl::Status(const SubmapsReader&)>& write_report,
     StageProgress* progress);
 
-// Lines for the standard output: the seconds of stages, whether the last
-// optimisation failed, and where --output and --report are.
+// These print the durations of stages, the statuses of closures, a failure of
+// the last optimisation, and the paths of --output and --report.
 void PrintStages(const std::vector<std::pair<std::string, double>>& seconds);
 void PrintStatuses(const std::string& prefix,
                    const std::vector<Closure>& closures);

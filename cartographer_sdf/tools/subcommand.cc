@@ -44,7 +44,7 @@ constexpr size_t kLineLength = 80;
 
 enum ExitCode { kDone = 0, kWorldAtFault = 1, kWrongUsage = 2 };
 
-// gflags prints doubles to the last digit.
+// gflags prints doubles with all digits.
 std::string ShortDefault(const gflags::CommandLineFlagInfo& info) {
   double value = 0.;
   if (info.type == "double" && absl::SimpleAtod(info.default_value, &value)) {
@@ -143,7 +143,8 @@ std::string HelpText(const Subcommand& subcommand) {
 std::string GeneralHelp() {
   std::string text = absl::StrCat(
       kProgram, " ", CARTOGRAPHER_SDF_VERSION,
-      ": wide-baseline loop closing for maps of Cartographer 2D.\n\nUsage:\n  ",
+      ": wide-baseline loop closing for maps of Cartographer 2D.\n\n"
+      "Usage:\n  ",
       kProgram, " SUBCOMMAND --flags\n  ", kProgram, " SUBCOMMAND --help\n  ",
       kProgram, " --version\n\nSubcommands:\n");
   for (const Subcommand& subcommand : AllSubcommands()) {
@@ -152,8 +153,7 @@ std::string GeneralHelp() {
                                            subcommand.summary));
   }
   return text +
-         "\nExit codes: 0 done, 1 something is wrong with a file, 2 "
-         "wrong usage.\n";
+         "\nExit codes: 0 success, 1 an error with a file, 2 wrong usage.\n";
 }
 
 int Fail(const std::string& invocation, const absl::Status& status) {
@@ -293,7 +293,8 @@ int RunProgram(const std::vector<std::string>& arguments) {
 void KeepFreedMemory() {
 #ifdef __GLIBC__
   constexpr int kMegabyte = 1 << 20;
-  // The most that glibc takes: larger arrays are mapped, and given back.
+  // The largest threshold that glibc accepts: larger arrays are mapped and
+  // returned.
   mallopt(M_MMAP_THRESHOLD, 32 * kMegabyte);
   mallopt(M_TRIM_THRESHOLD, 512 * kMegabyte);
 #endif

@@ -40,8 +40,8 @@ TEST(ProgramTest, Helps) {
   const ProgramResult help = RunTestProgram({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.error, "");
-  EXPECT_THAT(help.output,
-              AllOf(HasSubstr("Usage:"), HasSubstr("what is in a map")));
+  EXPECT_THAT(help.output, AllOf(HasSubstr("Usage:"),
+                                 HasSubstr("describe the contents of a map")));
   // Flags of libraries are nobody's business.
   EXPECT_THAT(help.output, Not(HasSubstr("minloglevel")));
   for (const Subcommand& subcommand : AllSubcommands()) {
