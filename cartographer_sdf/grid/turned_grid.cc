@@ -23,8 +23,8 @@ OccupancyGrid TurnedGrid(const OccupancyGrid& source, const double angle) {
       (bounds.sizes().array() / geometry.resolution).ceil().cast<int>();
   geometry.T_submap_grid = geometry.T_submap_grid * Rigid2(bounds.min(), 0.);
   OccupancyGrid turned = UnknownGrid(geometry);
-  // (continuous cells of the source <- cells of the turned grid), computed once:
-  // applying a pose to each of a million cells takes a quarter of a second.
+  // (cells of the source <- cells of the turned grid), computed once: applying
+  // a pose to each of a million cells takes a quarter of a second.
   const Rigid2 T_source_turned = source.geometry.T_submap_grid.Inverse() *
                                  T_turned_source.Inverse() *
                                  geometry.T_submap_grid;
