@@ -46,7 +46,7 @@ constexpr char kTableName[] = "SDF_LIVE";
 LocalizationOptions LocalizerOfYoungQueries() {
   LocalizationOptions options;
   options.count_likely_matches = true;
-  options.placement.further_match_weight = 1.;
+  options.placement.further_match_weight = 0.3;
   options.placement.min_score = 7.;
   return options;
 }
