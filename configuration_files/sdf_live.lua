@@ -64,7 +64,8 @@ SDF_LIVE = {
 SDF_LIVE.retrieval.max_num_candidates = 15
 
 -- An early query is a single place and sees too little for most of its matches
--- to be certain. So all likely matches count, and the required total is higher.
+-- to be certain. So its likely matches count, too, further ones in part, as
+-- overlapping submaps of the map share scans; the required total is higher.
 SDF_LIVE.localization.localizer.count_likely_matches = true
 SDF_LIVE.localization.localizer.placement.further_match_weight = 0.3
 SDF_LIVE.localization.localizer.placement.min_score = 7.

@@ -43,7 +43,7 @@ constexpr char kTableName[] = "SDF_LIVE";
 
 }  // namespace
 
-LocalizationOptions LocalizerOfYoungQueries() {
+LocalizationOptions SinglePlaceLocalizationOptions() {
   LocalizationOptions options;
   options.count_likely_matches = true;
   options.placement.further_match_weight = 0.3;

@@ -22,10 +22,11 @@
 
 namespace cartographer_sdf {
 
-// A young query is a single place, which sees too little for most of its
-// matches to be certain: all plausible matches add up, and more of them are
-// required in return.
-[[nodiscard]] LocalizationOptions LocalizerOfYoungQueries();
+// Returns the localiser's options for a query that is a single place, as live
+// ones are. It sees too little for most of its matches to be certain, so
+// matches with further submaps of the map count in part, and the least score is
+// higher in return. Values: docs/results/live.md.
+[[nodiscard]] LocalizationOptions SinglePlaceLocalizationOptions();
 
 // Localisation of a new trajectory in a loaded map: the localiser is queried
 // repeatedly with the robot's recent scans, long before the first submap is
@@ -43,7 +44,7 @@ struct LiveLocalizationOptions {
   // Number of best submaps of the map that are matched with the query, which
   // shows less than a submap does. Larger: found sooner, more CPU time.
   int max_num_candidates = 50;
-  LocalizationOptions localizer = LocalizerOfYoungQueries();
+  LocalizationOptions localizer = SinglePlaceLocalizationOptions();
   // Number of consecutive queries, each after more driving, that must agree.
   int min_num_queries = 2;
   // Poses nearer than this are the same pose [m], [rad].

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <utility>
 
+#include "absl/strings/str_format.h"
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/live/live_metrics.h"
 #include "cartographer_sdf/live/searcher.h"
@@ -48,7 +49,10 @@ void FillIn(const BackgroundSearch::Query& query,
     result->verdict = LocalizationVerdict::kUncertain;
     result->reason =
         query.num_certain < min_num_queries
-            ? "one query is not enough"
+            ? absl::StrFormat(
+                  "%d of the %d queries in a row that are needed "
+                  "agree",
+                  query.num_certain, min_num_queries)
             : "the scans of too few nodes fit where the matches put them";
   }
 }
