@@ -45,14 +45,14 @@ struct FieldSample {
   Eigen::Vector2d gradient;  // in the grid frame, dimensionless
 };
 
-// Bilinear interpolation at a point of the *grid* frame and its gradient, of a
-// field whose cells are distance(i, j) [m]; none outside the centres of the
-// outermost cells. Inline: the inner loop of verification.
+// Bilinear interpolation at a point in continuous cell coordinates
+// (CellGeometry::GridToCells) and its gradient, of a field whose cells are
+// distance(i, j) [m]; none outside the centres of the outermost cells. Inline:
+// the inner loop of verification.
 template <typename Distance>
 [[nodiscard]] inline std::optional<FieldSample> InterpolateField(
-    const CellGeometry& geometry, const Eigen::Vector2d& p_grid,
+    const CellGeometry& geometry, const Eigen::Vector2d& cells,
     const Distance& distance) {
-  const Eigen::Vector2d cells = geometry.GridToCells(p_grid);
   if (!(cells.x() >= 0. && cells.y() >= 0. &&
         cells.x() < geometry.size.x() - 1 &&
         cells.y() < geometry.size.y() - 1)) {
@@ -71,9 +71,10 @@ template <typename Distance>
       Eigen::Vector2d(along_x, top - bottom) / geometry.resolution};
 }
 
+// At a point of the *grid* frame.
 [[nodiscard]] inline std::optional<FieldSample> SampleField(
     const DistanceField& field, const Eigen::Vector2d& p_grid) {
-  return InterpolateField(field.geometry, p_grid,
+  return InterpolateField(field.geometry, field.geometry.GridToCells(p_grid),
                           [&field](const Eigen::Index i, const Eigen::Index j) {
                             return static_cast<double>(field.distance(i, j));
                           });

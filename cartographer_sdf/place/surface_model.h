@@ -58,11 +58,10 @@ struct SurfaceModel {
 [[nodiscard]] double ObservedArea(const SurfaceModel& model);
 [[nodiscard]] Eigen::Vector2d ObservedCentroid(const SurfaceModel& model);
 
-// As SampleField, to half a millimetre.
+// As SampleField, to half a millimetre, in continuous cell coordinates.
 [[nodiscard]] inline std::optional<FieldSample> SampleSurface(
-    const SurfaceModel& model, const Eigen::Vector2d& p_grid) {
-  const CellGeometry& geometry = model.geometry;
-  return InterpolateField(geometry, p_grid,
+    const SurfaceModel& model, const Eigen::Vector2d& cells) {
+  return InterpolateField(model.geometry, cells,
                           [&model](const Eigen::Index i, const Eigen::Index j) {
                             return 1e-3 * model.cells(i, j).distance;
                           });

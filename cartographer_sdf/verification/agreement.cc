@@ -10,9 +10,6 @@
 namespace cartographer_sdf {
 namespace {
 
-// A sample of this size gives a half overlap to 2 %.
-constexpr size_t kMaxNumOverlapPoints = 1000;
-
 constexpr size_t kChunkSize = 64;
 
 // Side of a tile, and the length of wall with which it counts whole [m].
@@ -73,10 +70,6 @@ void VisitCells(const SurfaceModel& model,
   }
 }
 
-double Weight(const AgreementOptions& options, const SurfacePoint& point) {
-  return options.weigh_by_certainty ? point.weight : 1.;
-}
-
 // Squares that cover a submap, and what surrounds it within reach of a hit.
 class Tiles {
  public:
@@ -89,16 +82,33 @@ class Tiles {
               1),
         tiles_(size_.prod()) {}
 
-  // Points beyond the grid have no cell there and hence no tile.
-  void Add(const Eigen::Vector2d& p_submap, const double weight,
-           const bool is_hit) {
-    const Eigen::Vector2d p = (T_grid_submap_ * p_submap) / kTileSize;
-    const Eigen::Array2i index =
-        p.array().floor().cast<int>().max(0).min(size_ - 1);
-    Tile& tile = tiles_[index.x() * size_.y() + index.y()];
-    tile.weight += weight;
-    if (is_hit) tile.hits += weight;
-  }
+  // Of points in a frame that T_submap_points takes to the submap's. Points
+  // beyond the grid have no cell there and hence no tile.
+  class Adder {
+   public:
+    Adder(Tiles* const tiles, const Rigid2& T_submap_points) : tiles_(tiles) {
+      const Rigid2 T_grid_points = tiles->T_grid_submap_ * T_submap_points;
+      rotation_ = T_grid_points.RotationMatrix() / kTileSize;
+      translation_ = T_grid_points.translation() / kTileSize;
+    }
+    void operator()(const Eigen::Vector2d& point, const double weight,
+                    const bool is_hit) const {
+      const Eigen::Array2i index = (rotation_ * point + translation_)
+                                       .array()
+                                       .floor()
+                                       .cast<int>()
+                                       .max(0)
+                                       .min(tiles_->size_ - 1);
+      Tile& tile = tiles_->tiles_[index.x() * tiles_->size_.y() + index.y()];
+      tile.weight += weight;
+      if (is_hit) tile.hits += weight;
+    }
+
+   private:
+    Tiles* const tiles_;
+    Eigen::Matrix2d rotation_;
+    Eigen::Vector2d translation_;
+  };
 
   // `full_weight`: of a tile that counts whole.
   [[nodiscard]] TileAgreement Summarize(const double full_weight) const {
@@ -123,6 +133,38 @@ class Tiles {
   std::vector<Tile> tiles_;
 };
 
+// Adds up the points and calls visit(point, weight, is_hit) for each that lies
+// within what the model has observed.
+template <typename Visitor>
+DirectedAgreement Measure(const AgreementOptions& options,
+                          const SurfaceModel& model,
+                          const std::vector<SurfacePoint>& points,
+                          const Rigid2& T_model_points, const Visitor& visit) {
+  const double hit = 1e3 * options.hit_distance_meters;
+  const double contradiction = 1e3 * options.contradiction_distance_meters;
+  DirectedAgreement result;
+  VisitCells(
+      model, points, T_model_points, options.max_num_points,
+      [&](const SurfacePoint& point, const SurfaceCell& cell) {
+        const double distance = std::abs(cell.distance);
+        // Walls border on the unknown, so a hit may well lie in it.
+        const bool is_hit = distance <= hit;
+        if (!is_hit && !cell.observed) return;
+        const double weight = options.weigh_by_certainty ? point.weight : 1.;
+        result.num_points += weight;
+        if (is_hit) {
+          result.hits += weight;
+          result.squared_distance += weight * distance * distance;
+        } else if (distance > contradiction) {
+          result.contradictions +=
+              weight * (options.weigh_by_certainty ? cell.free / 255. : 1.);
+        }
+        visit(point, weight, is_hit);
+      });
+  result.squared_distance *= 1e-6;
+  return result;
+}
+
 }  // namespace
 
 std::string Validate(const AgreementOptions& options) {
@@ -139,63 +181,46 @@ DirectedAgreement MeasureAgreement(const AgreementOptions& options,
                                    const SurfaceModel& model,
                                    const std::vector<SurfacePoint>& points,
                                    const Rigid2& T_model_points) {
-  const double hit = options.hit_distance_meters;
-  const double contradiction = options.contradiction_distance_meters;
-  DirectedAgreement result;
-  VisitCells(model, points, T_model_points, options.max_num_points,
-             [&](const SurfacePoint& point, const SurfaceCell& cell) {
-               const double weight = Weight(options, point);
-               const double distance = 1e-3 * std::abs(cell.distance);
-               // Walls border on the unknown, so a hit may well lie in it.
-               if (distance <= hit) {
-                 result.num_points += weight;
-                 result.hits += weight;
-                 result.squared_distance += weight * distance * distance;
-               } else if (cell.observed) {
-                 result.num_points += weight;
-                 if (distance > contradiction) {
-                   result.contradictions +=
-                       weight *
-                       (options.weigh_by_certainty ? cell.free / 255. : 1.);
-                 }
-               }
-             });
-  return result;
+  return Measure(options, model, points, T_model_points,
+                 [](const SurfacePoint& /*point*/, const double /*weight*/,
+                    const bool /*is_hit*/) {});
 }
 
-TileAgreement MeasureTileAgreement(const AgreementOptions& options,
+PairAgreement MeasurePairAgreement(const AgreementOptions& options,
                                    const SurfaceModel& reference,
                                    const SurfaceModel& query,
                                    const Rigid2& T_reference_query) {
-  const size_t max_num_points = static_cast<size_t>(options.max_num_points);
   Tiles tiles(reference);
-  const auto add_all =
-      [&](const SurfaceModel& model, const SurfaceModel& points,
-          const Rigid2& T_model_points, const Rigid2& T_reference_points) {
-        const size_t count = std::min(max_num_points, points.walls.size());
-        // Each point stands for those that are not looked at.
-        const double stands_for = static_cast<double>(points.walls.size()) /
-                                  static_cast<double>(count) *
-                                  points.geometry.resolution;
-        VisitCells(model, points.walls, T_model_points, options.max_num_points,
-                   [&](const SurfacePoint& point, const SurfaceCell& cell) {
-                     const bool is_hit = 1e-3 * std::abs(cell.distance) <=
-                                         options.hit_distance_meters;
-                     if (!is_hit && !cell.observed) return;
-                     tiles.Add(T_reference_points * point.position,
-                               stands_for * Weight(options, point), is_hit);
-                   });
-      };
-  add_all(reference, query, T_reference_query, T_reference_query);
-  add_all(query, reference, T_reference_query.Inverse(), Rigid2());
-  return tiles.Summarize(kFullTileWallLength);
+  const auto measure = [&](const SurfaceModel& model,
+                           const SurfaceModel& points,
+                           const Rigid2& T_model_points,
+                           const Rigid2& T_reference_points) {
+    // Each point stands for those that are not looked at.
+    const double stands_for =
+        std::max(1., static_cast<double>(points.walls.size()) /
+                         static_cast<double>(options.max_num_points)) *
+        points.geometry.resolution;
+    const Tiles::Adder add(&tiles, T_reference_points);
+    return Measure(
+        options, model, points.walls, T_model_points,
+        [&](const SurfacePoint& point, const double weight, const bool is_hit) {
+          add(point.position, stands_for * weight, is_hit);
+        });
+  };
+  PairAgreement result;
+  result.query_in_reference =
+      measure(reference, query, T_reference_query, T_reference_query);
+  result.reference_in_query =
+      measure(query, reference, T_reference_query.Inverse(), Rigid2());
+  result.tiles = tiles.Summarize(kFullTileWallLength);
+  return result;
 }
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
-                   const Rigid2& T_reference_query) {
+                   const Rigid2& T_reference_query, const int max_num_points) {
   const CellLookup lookup(reference, T_reference_query);
-  const size_t num_points =
-      std::min(query.observed_points.size(), kMaxNumOverlapPoints);
+  const size_t num_points = std::min(query.observed_points.size(),
+                                     static_cast<size_t>(max_num_points));
   int count = 0;
   for (size_t k = 0; k < num_points; ++k) {
     const SurfaceCell* const cell = lookup.Find(query.observed_points[k]);

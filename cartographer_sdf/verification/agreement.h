@@ -60,15 +60,24 @@ struct TileAgreement {
   double mean_hit_ratio = 0.;
 };
 
-// By the wall points of both submaps, on tiles of the reference frame.
-[[nodiscard]] TileAgreement MeasureTileAgreement(
+// Of all wall points of two submaps: each in the other, and both on tiles of
+// the reference frame.
+struct PairAgreement {
+  DirectedAgreement query_in_reference;
+  DirectedAgreement reference_in_query;
+  TileAgreement tiles;
+};
+[[nodiscard]] PairAgreement MeasurePairAgreement(
     const AgreementOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& T_reference_query);
 
-// Area observed by both [m^2], from a sample of the query's observed points.
+// Area observed by both [m^2], from a sample of the query's observed points: a
+// thousand give a half overlap to 2 %.
+constexpr int kMaxNumOverlapPoints = 1000;
 [[nodiscard]] double OverlapArea(const SurfaceModel& reference,
                                  const SurfaceModel& query,
-                                 const Rigid2& T_reference_query);
+                                 const Rigid2& T_reference_query,
+                                 int max_num_points = kMaxNumOverlapPoints);
 
 // Its centroid in the query frame [m]; none where nothing is observed by both.
 [[nodiscard]] std::optional<Eigen::Vector2d> OverlapCentroid(

@@ -57,13 +57,11 @@ PairEvidence MeasurePair(const AgreementOptions& agreement,
                          const SurfaceModel& query,
                          const Rigid2& T_reference_query) {
   PairEvidence evidence;
-  evidence.query_in_reference =
-      MeasureAgreement(agreement, reference, query.walls, T_reference_query);
-  evidence.reference_in_query = MeasureAgreement(
-      agreement, query, reference.walls, T_reference_query.Inverse());
-  evidence.tiles =
-      MeasureTileAgreement(agreement, reference, query, T_reference_query);
-  evidence.overlap_area = OverlapArea(reference, query, T_reference_query);
+  static_cast<PairAgreement&>(evidence) =
+      MeasurePairAgreement(agreement, reference, query, T_reference_query);
+  evidence.overlap_area =
+      OverlapArea(reference, query, T_reference_query,
+                  std::min(kMaxNumOverlapPoints, agreement.max_num_points));
   evidence.overlap =
       std::min(1., evidence.overlap_area /
                        std::min(ObservedArea(reference), ObservedArea(query)));

@@ -17,10 +17,7 @@
 
 namespace cartographer_sdf {
 
-struct PairEvidence {
-  DirectedAgreement query_in_reference;
-  DirectedAgreement reference_in_query;
-  TileAgreement tiles;
+struct PairEvidence : PairAgreement {
   double overlap_area = 0.;  // observed by both [m^2]
   double overlap = 0.;       // as a fraction of the smaller observed area
   // Scatter of the normals of the matching walls; see NormalScatter.
@@ -46,7 +43,9 @@ struct PairEvidence {
   [[nodiscard]] Eigen::Vector2d LeastConstrainedDirection() const;
 };
 
-// Any pose can be measured, however wrong. Some 0.1 ms.
+// Any pose can be measured, however wrong. Some 0.1 ms; less with fewer points
+// (AgreementOptions::max_num_points), by which the sample of the overlap
+// shrinks too.
 [[nodiscard]] PairEvidence MeasurePair(const AgreementOptions& agreement,
                                        const RegistrationOptions& registration,
                                        const SurfaceModel& reference,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "glog/logging.h"
@@ -16,14 +17,19 @@ namespace {
 constexpr double kMinSumOfWeights = 5.;
 
 struct NormalEquations {
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();  // the lower triangle
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double sum_of_weights = 0.;
 
   void Add(const double weight, const double residual,
            const Eigen::Vector3d& jacobian) {
-    A.noalias() += weight * jacobian * jacobian.transpose();
-    b.noalias() -= weight * residual * jacobian;
+    const Eigen::Vector3d weighted = weight * jacobian;
+    for (int column = 0; column < 3; ++column) {
+      for (int row = column; row < 3; ++row) {
+        A(row, column) += weighted[row] * jacobian[column];
+      }
+    }
+    b.noalias() -= residual * weighted;
     sum_of_weights += weight;
   }
 };
@@ -37,10 +43,59 @@ Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
   return Eigen::Vector2d(-v.y(), v.x());
 }
 
-// The distance to the middle of a wall: a wall's cells are its points, and the
-// field is zero on their edge, half a cell away.
-double Residual(const SurfaceModel& field, const FieldSample& sample) {
-  return sample.distance + 0.5 * field.geometry.resolution;
+constexpr size_t kChunkSize = 64;
+
+// Both columns of the four cells around a point.
+void PrefetchCells(const SurfaceModel& field, const Eigen::Vector2d& cells) {
+  const Eigen::Array2i size = field.geometry.size;
+  if (!(cells.x() >= 0. && cells.y() >= 0. && cells.x() < size.x() - 1 &&
+        cells.y() < size.y() - 1)) {
+    return;
+  }
+  const SurfaceCell* const cell =
+      &field.cells(static_cast<Eigen::Index>(cells.x()),
+                   static_cast<Eigen::Index>(cells.y()));
+  __builtin_prefetch(cell);
+  __builtin_prefetch(cell + field.cells.rows());
+}
+
+// Calls visit(point, p_field, residual, gradient) for the first `count` points
+// that fall into the field: the point in the field's frame [m], its distance to
+// the middle of a wall [m] and the gradient of that in the field's frame. A
+// wall's cells are its points, and the field is zero on their edge, half a cell
+// away.
+template <typename Visitor>
+void VisitField(const SurfaceModel& field,
+                const std::vector<SurfacePoint>& points, const size_t count,
+                const Rigid2& T_field_points, const Visitor& visit) {
+  const CellGeometry& geometry = field.geometry;
+  const Rigid2 T_grid_points =
+      geometry.T_submap_grid.Inverse() * T_field_points;
+  const Eigen::Matrix2d R_cells_points =
+      T_grid_points.RotationMatrix() / geometry.resolution;
+  const Eigen::Vector2d t_cells_points =
+      geometry.GridToCells(T_grid_points.translation());
+  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
+  const Eigen::Matrix2d R_field_grid = geometry.T_submap_grid.RotationMatrix();
+  const double half_cell = 0.5 * geometry.resolution;
+  std::array<Eigen::Vector2d, kChunkSize> cells;
+  for (size_t begin = 0; begin < count; begin += kChunkSize) {
+    const size_t size = std::min(kChunkSize, count - begin);
+    // The cells lie far apart in memory: all are on their way before the first
+    // is looked at.
+    for (size_t k = 0; k < size; ++k) {
+      cells[k] = R_cells_points * points[begin + k].position + t_cells_points;
+      PrefetchCells(field, cells[k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      const std::optional<FieldSample> sample = SampleSurface(field, cells[k]);
+      if (!sample) continue;
+      const SurfacePoint& point = points[begin + k];
+      visit(point,
+            R_field_points * point.position + T_field_points.translation(),
+            sample->distance + half_cell, R_field_grid * sample->gradient);
+    }
+  }
 }
 
 // Points of the frame that moves, against a field that stands.
@@ -48,23 +103,15 @@ void AddForward(const SurfaceModel& field,
                 const std::vector<SurfacePoint>& points, const size_t count,
                 const Rigid2& T_field_points, const double scale,
                 NormalEquations* const equations) {
-  const Rigid2 T_grid_points =
-      field.geometry.T_submap_grid.Inverse() * T_field_points;
-  const Eigen::Matrix2d R = T_grid_points.RotationMatrix();
-  const Eigen::Matrix2d R_field_grid =
-      field.geometry.T_submap_grid.RotationMatrix();
-  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
-  for (size_t k = 0; k < count; ++k) {
-    const std::optional<FieldSample> sample = SampleSurface(
-        field, R * points[k].position + T_grid_points.translation());
-    if (!sample) continue;
-    const double residual = Residual(field, *sample);
-    const Eigen::Vector2d gradient = R_field_grid * sample->gradient;
-    equations->Add(
-        points[k].weight * GemanMcClureWeight(residual, scale), residual,
-        {gradient.x(), gradient.y(),
-         gradient.dot(Perpendicular(R_field_points * points[k].position))});
-  }
+  VisitField(
+      field, points, count, T_field_points,
+      [&](const SurfacePoint& point, const Eigen::Vector2d& p_field,
+          const double residual, const Eigen::Vector2d& gradient) {
+        const Eigen::Vector2d arm = p_field - T_field_points.translation();
+        equations->Add(
+            point.weight * GemanMcClureWeight(residual, scale), residual,
+            {gradient.x(), gradient.y(), gradient.dot(Perpendicular(arm))});
+      });
 }
 
 // Points that stand, against a field of the frame that moves.
@@ -72,26 +119,16 @@ void AddBackward(const SurfaceModel& field,
                  const std::vector<SurfacePoint>& points, const size_t count,
                  const Rigid2& T_points_field, const double scale,
                  NormalEquations* const equations) {
-  const Rigid2 T_field_points = T_points_field.Inverse();
-  const Rigid2 T_grid_field = field.geometry.T_submap_grid.Inverse();
-  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
   const Eigen::Matrix2d R_points_field = T_points_field.RotationMatrix();
-  const Eigen::Matrix2d R_grid_field = T_grid_field.RotationMatrix();
-  for (size_t k = 0; k < count; ++k) {
-    const Eigen::Vector2d p_field =
-        R_field_points * points[k].position + T_field_points.translation();
-    const std::optional<FieldSample> sample = SampleSurface(
-        field, R_grid_field * p_field + T_grid_field.translation());
-    if (!sample) continue;
-    const double residual = Residual(field, *sample);
-    const Eigen::Vector2d gradient =
-        R_grid_field.transpose() * sample->gradient;
-    const Eigen::Vector2d translation = -(R_points_field * gradient);
-    equations->Add(points[k].weight * GemanMcClureWeight(residual, scale),
-                   residual,
+  VisitField(field, points, count, T_points_field.Inverse(),
+             [&](const SurfacePoint& point, const Eigen::Vector2d& p_field,
+                 const double residual, const Eigen::Vector2d& gradient) {
+               const Eigen::Vector2d translation = -(R_points_field * gradient);
+               equations->Add(
+                   point.weight * GemanMcClureWeight(residual, scale), residual,
                    {translation.x(), translation.y(),
                     -gradient.dot(Perpendicular(p_field))});
-  }
+             });
 }
 
 template <typename AddResiduals>
@@ -184,7 +221,9 @@ Eigen::Matrix2d NormalScatter(const RegistrationOptions& options,
   if (equations.sum_of_weights < kMinSumOfWeights) {
     return Eigen::Matrix2d::Zero();
   }
-  return equations.A.topLeftCorner<2, 2>() / equations.sum_of_weights;
+  const Eigen::Matrix2d scatter =
+      equations.A.topLeftCorner<2, 2>().selfadjointView<Eigen::Lower>();
+  return scatter / equations.sum_of_weights;
 }
 
 std::optional<Rigid2> RegisterPoints(const RegistrationOptions& options,

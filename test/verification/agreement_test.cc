@@ -97,27 +97,28 @@ TEST(TileAgreementTest, EachPlaceCountsOnce) {
   const SurfaceModel b =
       testing::SurfaceSeenFrom(with_box, Rigid2(), viewpoints);
   const TileAgreement same =
-      MeasureTileAgreement(AgreementOptions(), a, a, Rigid2());
+      MeasurePairAgreement(AgreementOptions(), a, a, Rigid2()).tiles;
   EXPECT_NEAR(same.mean_hit_ratio, 1., 1e-9);
   // 48 m of wall.
   EXPECT_NEAR(same.num_tiles, 24., 1.);
   const TileAgreement different =
-      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2());
+      MeasurePairAgreement(AgreementOptions(), a, b, Rigid2()).tiles;
   EXPECT_LT(different.mean_hit_ratio, 1. - 0.5 / different.num_tiles);
   // Either way round, but for where the squares begin.
   const TileAgreement swapped =
-      MeasureTileAgreement(AgreementOptions(), b, a, Rigid2());
+      MeasurePairAgreement(AgreementOptions(), b, a, Rigid2()).tiles;
   EXPECT_NEAR(swapped.mean_hit_ratio, different.mean_hit_ratio, 0.01);
   // A sample stands for all.
   AgreementOptions few_points;
   few_points.max_num_points = 400;
   const TileAgreement sampled =
-      MeasureTileAgreement(few_points, a, b, Rigid2());
+      MeasurePairAgreement(few_points, a, b, Rigid2()).tiles;
   EXPECT_NEAR(sampled.num_tiles, different.num_tiles, 1.);
   EXPECT_NEAR(sampled.mean_hit_ratio, different.mean_hit_ratio, 0.002);
   // Far away they share nothing.
   const TileAgreement none =
-      MeasureTileAgreement(AgreementOptions(), a, b, Rigid2(500., 0., 0.));
+      MeasurePairAgreement(AgreementOptions(), a, b, Rigid2(500., 0., 0.))
+          .tiles;
   EXPECT_EQ(none.num_tiles, 0.);
   EXPECT_EQ(none.mean_hit_ratio, 0.);
 }

@@ -74,9 +74,10 @@ std::vector<std::optional<WeightedDistance>> Distances(
     const Rigid2& T_field_points) {
   std::vector<std::optional<WeightedDistance>> distances;
   for (size_t k = 0; k < points.size() && k < 300; ++k) {
-    const std::optional<FieldSample> sample =
-        SampleSurface(field, field.geometry.T_submap_grid.Inverse() *
-                                 (T_field_points * points[k].position));
+    const std::optional<FieldSample> sample = SampleSurface(
+        field,
+        field.geometry.GridToCells(field.geometry.T_submap_grid.Inverse() *
+                                   (T_field_points * points[k].position)));
     distances.emplace_back();
     if (sample) {
       distances.back() = {points[k].weight, sample->distance + 0.025};
