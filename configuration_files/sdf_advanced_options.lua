@@ -87,8 +87,10 @@ SDF_GLOBAL_CONSTRAINTS = {
             -- rotation.
             min_baseline_meters = 1.5,
             -- [m], [rad] Bins of the accumulator of poses.
-            bin_distance_meters = 0.5,
-            bin_rotation = 0.1,
+            bins = {
+              distance_meters = 0.5,
+              rotation = 0.1,
+            },
           },
         },
         verification = {
@@ -112,6 +114,18 @@ SDF_GLOBAL_CONSTRAINTS = {
             -- Hypotheses that score lower than the best by more are not
             -- refined. Larger: slower, detects more rivals.
             max_fine_score_gap = 0.25,
+          },
+          -- A look at coarsely registered poses, before those that may be the
+          -- best or its rivals are registered and measured fully.
+          screening = {
+            -- Wall points of each submap. Larger: slower, drops fewer poses.
+            num_points = 300,
+            -- If all poses of a pair score lower, only the best is completed;
+            -- log-odds. Smaller: slower.
+            min_score = -12.,
+            -- Poses that score lower than the best by more are dropped.
+            -- Larger: slower, detects more rivals.
+            max_score_gap = 8.,
           },
           -- Refinement of a pose on the distance fields.
           registration = {
@@ -175,28 +189,47 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Random seed of RANSAC.
         seed = 42,
       },
+      -- The index that proposes which submaps to match: pairs of keypoints,
+      -- stored under their kinds, clearances, distance and relative
+      -- orientations.
       retrieval = {
-        -- Nearest neighbours per feature in the whole map. Larger: more recall,
-        -- slower.
-        num_neighbours = 100,
-        -- [m] Features whose distance to walls differs by more do not match.
-        max_clearance_difference_meters = 0.2,
-        -- As match.hypotheses.votes.
-        votes = {
-          max_num_correspondences = 250,
-          max_length_difference_meters = 0.25,
-          max_orientation_difference = 0.35,
-          min_baseline_meters = 1.,
-          bin_distance_meters = 0.75,
-          bin_rotation = 0.2,
+        pairs = {
+          -- [m] Keypoints are paired at these distances.
+          min_length_meters = 1.5,
+          max_length_meters = 8.,
+          -- [m], [m], [rad] Bins. Larger: more recall, slower.
+          clearance_bin_meters = 0.2,
+          length_bin_meters = 0.3,
+          orientation_bin = 0.45,
+          -- A query also looks into the next bin where it lies within this
+          -- fraction of a bin from it. Larger: more recall, slower.
+          border_fraction = 0.3,
         },
+        -- Partners with which each keypoint is stored, and sought. Larger: more
+        -- recall, more memory, slower.
+        num_stored_partners = 3,
+        num_sought_partners = 6,
+        -- Pairs stored of a submap (20 bytes each), and sought of a query.
+        max_num_stored_pairs = 360,
+        max_num_sought_pairs = 1000,
+        -- Stored pairs that a query looks at, the rarest first: bounds its time
+        -- in large maps.
+        max_num_visited_pairs = 300000,
+        -- [m], [rad] Bins of the accumulator of poses.
+        pose_bins = {
+          distance_meters = 0.75,
+          rotation = 0.2,
+        },
+        -- Poses that are tried of each candidate, beside those of the match's
+        -- own correspondences.
+        max_num_poses = 4,
         -- Submaps with a lower score are not matched. Larger: faster, less
         -- recall.
-        min_score = 0.06,
+        min_score = 0.004,
         -- The best min_num_candidates are matched whatever their score, and
         -- never more than max_num_candidates.
         min_num_candidates = 10,
-        max_num_candidates = 200,
+        max_num_candidates = 20,
       },
       -- Neighbourhood verification: the neighbours of both submaps, where local
       -- SLAM places them, support or contradict a match.
@@ -222,6 +255,10 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Least score at which a match proposes poses to neighbouring pairs.
         -- Larger: faster, less recall.
         min_proposing_score = 0.,
+        -- A pair that was proposed and found likely proposes poses in its turn;
+        -- this many times over. Larger: more recall where a place was seen
+        -- often, slower.
+        max_num_rounds = 4,
         -- Score = log-odds of being right. Learned by scripts/learn_score.py
         -- --neighbours on the same maps as score_weights.
         weights = {

@@ -34,10 +34,9 @@ local recognition = loop_closing.recognition
 -- Least difference of the indices of two submaps of one trajectory; closer ones
 -- share scans and are not matched.
 recognition.min_index_gap = 3
--- Whether an index of all features proposes the pairs to match. false: every
--- pair is matched, which finds slightly more but takes time quadratic in the
--- number of submaps.
-recognition.use_retrieval = false
+-- Whether an index of all submaps proposes the pairs to match. false: every pair
+-- is matched, which takes time quadratic in the number of submaps; for studies.
+recognition.use_retrieval = true
 -- Whether matches are verified together with the neighbours of both submaps,
 -- which resolves perceptual aliasing and finds matches that a pair's own
 -- features miss. false: each pair is verified alone; faster.

@@ -52,13 +52,17 @@ inline void VisitOptions(OptionVisitor& visit, CorrespondenceOptions& options) {
         options.max_clearance_difference_meters);
 }
 
+inline void VisitOptions(OptionVisitor& visit, PoseBinOptions& options) {
+  visit("distance_meters", options.distance_meters);
+  visit("rotation", options.rotation);
+}
+
 inline void VisitOptions(OptionVisitor& visit, PoseVotingOptions& options) {
   visit("max_num_correspondences", options.max_num_correspondences);
   visit("max_length_difference_meters", options.max_length_difference_meters);
   visit("max_orientation_difference", options.max_orientation_difference);
   visit("min_baseline_meters", options.min_baseline_meters);
-  visit("bin_distance_meters", options.bin_distance_meters);
-  visit("bin_rotation", options.bin_rotation);
+  visit("bins", options.bins);
 }
 
 inline void VisitOptions(OptionVisitor& visit, HypothesisOptions& options) {
@@ -83,6 +87,12 @@ inline void VisitOptions(OptionVisitor& visit, RankingOptions& options) {
   visit("min_coarse_score", options.min_coarse_score);
   visit("min_fine_score", options.min_fine_score);
   visit("max_fine_score_gap", options.max_fine_score_gap);
+}
+
+inline void VisitOptions(OptionVisitor& visit, ScreeningOptions& options) {
+  visit("num_points", options.num_points);
+  visit("min_score", options.min_score);
+  visit("max_score_gap", options.max_score_gap);
 }
 
 inline void VisitOptions(OptionVisitor& visit, RegistrationOptions& options) {
@@ -119,6 +129,7 @@ inline void VisitOptions(OptionVisitor& visit, JudgementOptions& options) {
 
 inline void VisitOptions(OptionVisitor& visit, VerificationOptions& options) {
   visit("ranking", options.ranking);
+  visit("screening", options.screening);
   visit("registration", options.registration);
   visit("agreement", options.agreement);
   visit("judgement", options.judgement);
@@ -150,11 +161,24 @@ inline void VisitOptions(OptionVisitor& visit, TearOptions& options) {
   visit("min_rotation", options.min_rotation);
 }
 
+inline void VisitOptions(OptionVisitor& visit, KeypointPairOptions& options) {
+  visit("min_length_meters", options.min_length_meters);
+  visit("max_length_meters", options.max_length_meters);
+  visit("clearance_bin_meters", options.clearance_bin_meters);
+  visit("length_bin_meters", options.length_bin_meters);
+  visit("orientation_bin", options.orientation_bin);
+  visit("border_fraction", options.border_fraction);
+}
+
 inline void VisitOptions(OptionVisitor& visit, RetrievalOptions& options) {
-  visit("num_neighbours", options.num_neighbours);
-  visit("max_clearance_difference_meters",
-        options.max_clearance_difference_meters);
-  visit("votes", options.votes);
+  visit("pairs", options.pairs);
+  visit("num_stored_partners", options.num_stored_partners);
+  visit("num_sought_partners", options.num_sought_partners);
+  visit("max_num_stored_pairs", options.max_num_stored_pairs);
+  visit("max_num_sought_pairs", options.max_num_sought_pairs);
+  visit("max_num_visited_pairs", options.max_num_visited_pairs);
+  visit("pose_bins", options.pose_bins);
+  visit("max_num_poses", options.max_num_poses);
   visit("min_score", options.min_score);
   visit("min_num_candidates", options.min_num_candidates);
   visit("max_num_candidates", options.max_num_candidates);
@@ -216,6 +240,7 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("prior_contradiction_ratio", options.prior_contradiction_ratio);
   visit("min_pair_score", options.min_pair_score);
   visit("min_proposing_score", options.min_proposing_score);
+  visit("max_num_rounds", options.max_num_rounds);
   visit("weights", options.weights);
   visit("max_gain", options.max_gain);
 }

@@ -4,55 +4,99 @@
 #include "cartographer_sdf/matching/place_index.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
-
 namespace {
 
-// Estimates the inverse document frequency of a query feature from the slots of
-// the nearer half of its neighbours, of `num_slots` in total.
-float Distinctiveness(std::vector<int> slots, const size_t num_slots) {
-  std::sort(slots.begin(), slots.end());
-  slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-  return std::log1p(static_cast<float>(num_slots) /
-                    static_cast<float>(slots.size()));
+constexpr size_t kMinNumBuckets = 256;
+// Entries per bucket, at most on average.
+constexpr size_t kMaxLoad = 8;
+constexpr int kNumDirections = 256;
+constexpr float kMetersPerUnit = 0.01f;
+constexpr uint32_t kMaxNumSlots = 1u << 24;
+
+// Submaps whose votes are sorted into poses: of thousands, the others have too
+// few votes to be among the best.
+constexpr size_t kMaxNumVotedSubmaps = 200;
+
+// Directions in 1 / 256 of a turn.
+uint32_t QuantizeDirection(const double direction) {
+  return static_cast<uint32_t>(
+             std::lround(direction / (2. * M_PI) * kNumDirections) +
+             kNumDirections) %
+         kNumDirections;
 }
 
-// Returns the weight of the pose for which the correspondences with one submap
-// vote most; nullopt if no two agree.
-std::optional<double> HeaviestVote(
-    const PoseVotingOptions& options, const Eigen::Vector2d& centroid,
-    std::vector<WeightedCorrespondence> correspondences) {
-  std::stable_sort(
-      correspondences.begin(), correspondences.end(),
-      [](const WeightedCorrespondence& a, const WeightedCorrespondence& b) {
-        return a.weight > b.weight;
-      });
-  const std::vector<VotedPose> poses =
-      VotePoses(options, 1, centroid, std::move(correspondences));
-  if (poses.empty()) return std::nullopt;
-  return poses.front().weight;
+struct UnitVector {
+  float x, y;
+};
+std::array<UnitVector, kNumDirections> MakeUnitVectors() {
+  std::array<UnitVector, kNumDirections> vectors;
+  for (int k = 0; k < kNumDirections; ++k) {
+    const double angle = 2. * M_PI * k / kNumDirections;
+    vectors[k] = {static_cast<float>(std::cos(angle)),
+                  static_cast<float>(std::sin(angle))};
+  }
+  return vectors;
 }
+
+// Turns the pairs of a query onto stored ones.
+class PoseOfPair {
+ public:
+  PoseOfPair(const KeypointPair& pair, const Eigen::Vector2d& centroid)
+      : arm_(centroid.cast<float>() - pair.middle),
+        direction_(pair.direction),
+        cos_(std::cos(pair.direction)),
+        sin_(std::sin(pair.direction)) {}
+
+  // `middle` and `direction` of the stored pair.
+  [[nodiscard]] PoseVote operator()(const Eigen::Vector2f& middle,
+                                    const uint32_t direction,
+                                    const float weight) const {
+    static const std::array<UnitVector, kNumDirections> kUnit =
+        MakeUnitVectors();
+    const UnitVector& unit = kUnit[direction];
+    const float c = unit.x * cos_ + unit.y * sin_;
+    const float s = unit.y * cos_ - unit.x * sin_;
+    constexpr float kTurn = static_cast<float>(2. * M_PI);
+    float rotation =
+        static_cast<float>(direction) * (kTurn / kNumDirections) - direction_;
+    if (rotation > 0.5f * kTurn) rotation -= kTurn;
+    if (rotation > 0.5f * kTurn) rotation -= kTurn;
+    rotation = std::clamp(rotation, -0.5f * kTurn, 0.5f * kTurn);
+    return {middle.x() + c * arm_.x() - s * arm_.y(),
+            middle.y() + s * arm_.x() + c * arm_.y(), rotation, weight};
+  }
+
+ private:
+  const Eigen::Vector2f arm_;  // from the middle of the pair to the centroid
+  const float direction_;
+  const float cos_, sin_;
+};
 
 }  // namespace
 
 std::string Validate(const RetrievalOptions& options) {
-  if (options.num_neighbours < 2 || options.num_neighbours > 100000) {
-    return "num_neighbours must lie between 2 and 100000";
+  for (const std::string& error :
+       {Validate(options.pairs), Validate(options.pose_bins)}) {
+    if (!error.empty()) return error;
   }
-  if (!(options.max_clearance_difference_meters > 0.)) {
-    return "max_clearance_difference_meters must be positive";
-  }
-  if (const std::string error = Validate(options.votes); !error.empty()) {
-    return error;
+  for (const int count :
+       {options.num_stored_partners, options.num_sought_partners,
+        options.max_num_stored_pairs, options.max_num_sought_pairs,
+        options.max_num_visited_pairs, options.max_num_poses}) {
+    if (count < 1 || count > 100000000) {
+      return "num_stored_partners, num_sought_partners, max_num_stored_pairs, "
+             "max_num_sought_pairs, max_num_visited_pairs and max_num_poses "
+             "must lie between 1 and 100000000";
+    }
   }
   if (!(options.min_score >= 0.)) return "min_score must not be negative";
   if (options.min_num_candidates < 1 ||
@@ -62,266 +106,231 @@ std::string Validate(const RetrievalOptions& options) {
   return "";
 }
 
-PlaceIndex::PlaceIndex(const RetrievalOptions& options) : options_(options) {
+PlaceIndex::PlaceIndex(const RetrievalOptions& options)
+    : options_(options), buckets_(kMinNumBuckets) {
   CHECK_EQ(Validate(options), "");
 }
 
-PlaceIndex::Segment PlaceIndex::SelectRows(const Segment& segment,
-                                           const std::vector<int>& rows) {
-  Segment selected;
-  selected.descriptors.resize(static_cast<Eigen::Index>(rows.size()),
-                              segment.descriptors.cols());
-  for (const int row : rows) {
-    selected.descriptors.row(static_cast<Eigen::Index>(selected.slots.size())) =
-        segment.descriptors.row(row);
-    selected.clearances.push_back(segment.clearances[row]);
-    selected.slots.push_back(segment.slots[row]);
-    selected.features.push_back(segment.features[row]);
-  }
-  return selected;
+std::vector<PlaceIndex::Entry>& PlaceIndex::BucketOf(const uint32_t key) {
+  return buckets_[key & (buckets_.size() - 1)];
 }
 
-PlaceIndex::Segment PlaceIndex::Merge(const Segment& a, const Segment& b) {
-  Segment both = a;
-  both.clearances.insert(both.clearances.end(), b.clearances.begin(),
-                         b.clearances.end());
-  both.slots.insert(both.slots.end(), b.slots.begin(), b.slots.end());
-  both.features.insert(both.features.end(), b.features.begin(),
-                       b.features.end());
-  both.descriptors.resize(a.descriptors.rows() + b.descriptors.rows(),
-                          a.descriptors.cols());
-  both.descriptors << a.descriptors, b.descriptors;
-  std::vector<int> order(both.slots.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&both](int i, int j) {
-    return both.clearances[i] < both.clearances[j];
-  });
-  return SelectRows(both, order);
+const std::vector<PlaceIndex::Entry>& PlaceIndex::BucketOf(
+    const uint32_t key) const {
+  return buckets_[key & (buckets_.size() - 1)];
 }
 
-PlaceIndex::Segment PlaceIndex::MakeSegment(const FeatureSet& features,
-                                            std::vector<int> columns,
-                                            const int slot) {
-  const auto clearance = [&features](const int column) {
-    return static_cast<float>(features.features[column].keypoint.clearance);
-  };
-  std::stable_sort(columns.begin(), columns.end(),
-                   [&](int a, int b) { return clearance(a) < clearance(b); });
-  Segment segment;
-  segment.descriptors.resize(static_cast<Eigen::Index>(columns.size()),
-                             features.descriptors.rows());
-  for (const int column : columns) {
-    segment.descriptors.row(static_cast<Eigen::Index>(segment.slots.size())) =
-        features.descriptors.col(column).transpose();
-    segment.clearances.push_back(clearance(column));
-    segment.slots.push_back(slot);
-    segment.features.push_back(column);
+void PlaceIndex::Grow() {
+  std::vector<std::vector<Entry>> old(2 * buckets_.size());
+  old.swap(buckets_);
+  for (std::vector<Entry>& bucket : old) {
+    for (const Entry& entry : bucket) BucketOf(entry.key).push_back(entry);
+    std::vector<Entry>().swap(bucket);
   }
-  return segment;
 }
 
 void PlaceIndex::Add(const SubmapId& id, const FeatureSet& features) {
   CHECK(!Contains(id)) << id << " is in the index already";
-  if (!features.features.empty()) {
-    if (descriptor_length_ == 0) {
-      descriptor_length_ = features.descriptors.rows();
-    }
-    CHECK_EQ(features.descriptors.rows(), descriptor_length_);
-    CHECK_EQ(features.descriptors.cols(), features.features.size());
-  }
   if (free_slots_.empty()) {
-    free_slots_.push_back(static_cast<int>(slots_.size()));
+    CHECK_LT(slots_.size(), kMaxNumSlots);
+    free_slots_.push_back(static_cast<uint32_t>(slots_.size()));
     slots_.emplace_back();
   }
-  const int slot = free_slots_.back();
+  const uint32_t slot_index = free_slots_.back();
   free_slots_.pop_back();
-  slots_by_id_[id] = slot;
-  slots_[slot].id = id;
-  std::array<std::vector<int>, kNumKeypointKinds> columns;
-  for (const Feature& feature : features.features) {
-    columns[static_cast<int>(feature.keypoint.kind)].push_back(
-        static_cast<int>(slots_[slot].features.size()));
-    slots_[slot].features.push_back({feature.keypoint.position.cast<float>(),
-                                     static_cast<float>(feature.orientation)});
-  }
-  for (int kind = 0; kind < kNumKeypointKinds; ++kind) {
-    if (columns[kind].empty()) continue;
-    Segment added = MakeSegment(features, columns[kind], slot);
-    std::vector<Segment>& segments = segments_[kind];
-    segments.push_back(std::move(added));
-    while (segments.size() > 1 && 2 * segments.back().slots.size() >=
-                                      segments.end()[-2].slots.size()) {
-      const Segment merged = Merge(segments.end()[-2], segments.back());
-      segments.pop_back();
-      segments.back() = merged;
+  slots_by_id_[id] = slot_index;
+  Slot& slot = slots_[slot_index];
+  slot = Slot();
+  slot.id = id;
+  if (features.features.empty()) return;
+  slot.origin = KeypointCentroid(features).cast<float>();
+  for (const KeypointPair& pair : PairsToStore(
+           options_.pairs, options_.num_stored_partners,
+           static_cast<size_t>(options_.max_num_stored_pairs), features)) {
+    const Eigen::Vector2f middle = (pair.middle - slot.origin) / kMetersPerUnit;
+    if (!(middle.cwiseAbs().maxCoeff() <
+          static_cast<float>(std::numeric_limits<int16_t>::max()))) {
+      continue;
     }
+    Entry entry;
+    entry.slot = slot_index & (kMaxNumSlots - 1);
+    entry.direction = QuantizeDirection(pair.direction) & 255u;
+    entry.x = static_cast<int16_t>(std::lround(middle.x()));
+    entry.y = static_cast<int16_t>(std::lround(middle.y()));
+    for (const uint32_t key : pair.keys) {
+      entry.key = key;
+      BucketOf(key).push_back(entry);
+      ++num_entries_;
+    }
+    ++slot.num_pairs;
   }
+  while (num_entries_ > kMaxLoad * buckets_.size()) Grow();
 }
 
 bool PlaceIndex::Remove(const SubmapId& id) {
   const auto found = slots_by_id_.find(id);
   if (found == slots_by_id_.end()) return false;
-  const int slot = found->second;
+  Slot& slot = slots_[found->second];
+  slot.is_removed = true;
+  num_removed_entries_ += static_cast<size_t>(slot.num_pairs);
   slots_by_id_.erase(found);
-  slots_[slot].features.clear();
-  free_slots_.push_back(slot);
-  for (std::vector<Segment>& segments : segments_) {
-    for (Segment& segment : segments) {
-      std::vector<int> rows;
-      for (size_t row = 0; row < segment.slots.size(); ++row) {
-        if (segment.slots[row] != slot) rows.push_back(static_cast<int>(row));
-      }
-      if (rows.size() < segment.slots.size()) {
-        segment = SelectRows(segment, rows);
-      }
-    }
-    segments.erase(std::remove_if(segments.begin(), segments.end(),
-                                  [](const Segment& segment) {
-                                    return segment.slots.empty();
-                                  }),
-                   segments.end());
-  }
+  // Rarely, so that a removal costs as much as it takes to add a submap.
+  if (2 * num_removed_entries_ > num_entries_) Sweep();
   return true;
+}
+
+void PlaceIndex::Sweep() {
+  for (std::vector<Entry>& bucket : buckets_) {
+    bucket.erase(std::remove_if(bucket.begin(), bucket.end(),
+                                [this](const Entry& entry) {
+                                  return slots_[entry.slot].is_removed;
+                                }),
+                 bucket.end());
+  }
+  num_entries_ -= num_removed_entries_;
+  num_removed_entries_ = 0;
+  for (uint32_t k = 0; k < slots_.size(); ++k) {
+    if (!slots_[k].is_removed) continue;
+    slots_[k] = Slot();
+    free_slots_.push_back(k);
+  }
 }
 
 bool PlaceIndex::Contains(const SubmapId& id) const {
   return slots_by_id_.count(id) > 0;
 }
 
-template <typename Visitor>
-void PlaceIndex::VisitDistances(const Segment& segment, const double clearance,
-                                const Eigen::Ref<const Eigen::VectorXf>& query,
-                                const Visitor& visit) const {
-  const std::vector<float>& clearances = segment.clearances;
-  const auto row_at = [&clearances](const auto& iterator) {
-    return static_cast<Eigen::Index>(iterator - clearances.begin());
-  };
-  const double difference = options_.max_clearance_difference_meters;
-  const Eigen::Index first = row_at(std::lower_bound(
-      clearances.begin(), clearances.end(),
-      static_cast<float>(clearance) - static_cast<float>(difference)));
-  const Eigen::Index end = row_at(std::upper_bound(
-      clearances.begin(), clearances.end(),
-      static_cast<float>(clearance) + static_cast<float>(difference)));
-  // Elementwise, so that a distance does not depend on its neighbours in
-  // memory.
-  constexpr Eigen::Index kBlock = 512;
-  Eigen::Array<float, kBlock, 1> distances;
-  for (Eigen::Index begin = first; begin < end; begin += kBlock) {
-    const Eigen::Index size = std::min(kBlock, end - begin);
-    auto block = distances.head(size);
-    block.setZero();
-    for (Eigen::Index d = 0; d < descriptor_length_; ++d) {
-      block +=
-          (segment.descriptors.col(d).segment(begin, size) - query[d]).square();
-    }
-    for (Eigen::Index k = 0; k < size; ++k) visit(distances[k], begin + k);
+size_t PlaceIndex::MemoryUse() const {
+  size_t bytes =
+      buckets_.capacity() * sizeof(buckets_[0]) +
+      slots_.capacity() * sizeof(Slot) +
+      // A node of a map has three pointers and a colour beside.
+      slots_by_id_.size() * (sizeof(std::pair<SubmapId, uint32_t>) + 32);
+  for (const std::vector<Entry>& bucket : buckets_) {
+    bytes += bucket.capacity() * sizeof(Entry);
   }
+  return bytes;
 }
 
-std::vector<PlaceIndex::Neighbour> PlaceIndex::FindNeighbours(
-    const Feature& feature, const Eigen::Ref<const Eigen::VectorXf>& query,
-    const std::vector<char>& is_excluded) const {
-  // One more than vote: the others are compared with the last.
-  const size_t count = static_cast<size_t>(options_.num_neighbours) + 1;
-  const auto nearer = [this](const Neighbour& a, const Neighbour& b) {
-    return std::tie(a.squared_distance, slots_[a.slot].id, a.feature) <
-           std::tie(b.squared_distance, slots_[b.slot].id, b.feature);
-  };
-  std::vector<Neighbour> neighbours;
-  float limit = std::numeric_limits<float>::infinity();
-  const auto keep_nearest = [&] {
-    if (neighbours.size() <= count) return;
-    std::nth_element(neighbours.begin(), neighbours.begin() + count - 1,
-                     neighbours.end(), nearer);
-    neighbours.resize(count);
-    limit = neighbours.back().squared_distance;
-  };
-  for (const Segment& segment :
-       segments_[static_cast<int>(feature.keypoint.kind)]) {
-    VisitDistances(
-        segment, feature.keypoint.clearance, query,
-        [&](const float squared_distance, const Eigen::Index row) {
-          const int slot = segment.slots[row];
-          if (!(squared_distance <= limit) || is_excluded[slot]) {
-            return;
-          }
-          neighbours.push_back({squared_distance, slot, segment.features[row]});
-          if (neighbours.size() > 2 * count) keep_nearest();
-        });
+std::vector<PlaceIndex::Lookup> PlaceIndex::PlanLookups(
+    const std::vector<KeypointPair>& pairs) const {
+  std::vector<Lookup> lookups;
+  for (size_t k = 0; k < pairs.size(); ++k) {
+    for (const uint32_t key : pairs[k].keys) {
+      const size_t size = BucketOf(key).size();
+      if (size > 0) lookups.push_back({size, k, key});
+    }
   }
-  keep_nearest();
-  std::sort(neighbours.begin(), neighbours.end(), nearer);
-  return neighbours;
+  std::sort(lookups.begin(), lookups.end(),
+            [](const Lookup& a, const Lookup& b) {
+              return std::tie(a.bucket_size, a.pair, a.key) <
+                     std::tie(b.bucket_size, b.pair, b.key);
+            });
+  size_t num_visited = 0;
+  size_t count = 0;
+  while (count < lookups.size()) {
+    num_visited += lookups[count].bucket_size;
+    if (num_visited > static_cast<size_t>(options_.max_num_visited_pairs)) {
+      break;
+    }
+    ++count;
+  }
+  lookups.resize(count);
+  return lookups;
 }
 
-std::vector<std::vector<WeightedCorrespondence>> PlaceIndex::Correspond(
-    const FeatureSet& query, const Eigen::Vector2d& centroid,
+std::vector<PlaceIndex::SlotVote> PlaceIndex::CollectVotes(
+    const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
     const std::vector<char>& is_excluded) const {
-  std::vector<std::vector<WeightedCorrespondence>> correspondences(
-      slots_.size());
-  for (size_t k = 0; k < query.features.size(); ++k) {
-    const Feature& feature = query.features[k];
-    const std::vector<Neighbour> neighbours = FindNeighbours(
-        feature, query.descriptors.col(static_cast<Eigen::Index>(k)),
-        is_excluded);
-    if (neighbours.size() < 2) continue;
-    const float background = neighbours.back().squared_distance;
-    if (!(background > 0.f)) continue;
-    std::vector<int> near_slots;
-    for (size_t n = 0; 2 * n < neighbours.size(); ++n) {
-      near_slots.push_back(neighbours[n].slot);
+  const float num_submaps = static_cast<float>(slots_by_id_.size());
+  std::vector<SlotVote> votes;
+  for (const Lookup& lookup : PlanLookups(pairs)) {
+    const PoseOfPair pose_of(pairs[lookup.pair], centroid);
+    const size_t begin = votes.size();
+    for (const Entry& entry : BucketOf(lookup.key)) {
+      if (entry.key != lookup.key || is_excluded[entry.slot]) continue;
+      const Eigen::Vector2f middle =
+          slots_[entry.slot].origin +
+          kMetersPerUnit * Eigen::Vector2f(entry.x, entry.y);
+      votes.push_back({entry.slot, pose_of(middle, entry.direction, 1.f)});
     }
-    const float distinctiveness =
-        Distinctiveness(std::move(near_slots), size());
-    const Eigen::Vector2f p_centroid =
-        (feature.keypoint.position - centroid).cast<float>();
-    for (const Neighbour& neighbour : neighbours) {
-      const float weight =
-          distinctiveness * (1.f - neighbour.squared_distance / background);
-      if (!(weight > 0.f)) break;
-      const StoredFeature& other =
-          slots_[neighbour.slot].features[neighbour.feature];
-      correspondences[neighbour.slot].push_back(
-          {other.position, p_centroid,
-           static_cast<float>(
-               NormalizeAngle(other.orientation - feature.orientation)),
-           weight});
-    }
+    // Inverse document frequency of the key.
+    const float weight =
+        std::log1p(num_submaps / static_cast<float>(votes.size() - begin + 1));
+    for (size_t v = begin; v < votes.size(); ++v) votes[v].vote.weight = weight;
   }
-  return correspondences;
+  return votes;
+}
+
+std::vector<uint32_t> PlaceIndex::MostVoted(
+    const std::vector<SlotVote>& votes) const {
+  std::vector<float> weights(slots_.size(), 0.f);
+  std::vector<uint32_t> voted;
+  for (const SlotVote& vote : votes) {
+    if (weights[vote.slot] == 0.f) voted.push_back(vote.slot);
+    weights[vote.slot] += vote.vote.weight;
+  }
+  if (voted.size() <= kMaxNumVotedSubmaps) return voted;
+  for (const uint32_t slot : voted) {
+    weights[slot] /= std::sqrt(static_cast<float>(slots_[slot].num_pairs));
+  }
+  std::nth_element(voted.begin(), voted.begin() + kMaxNumVotedSubmaps,
+                   voted.end(),
+                   [this, &weights](const uint32_t a, const uint32_t b) {
+                     return std::make_tuple(-weights[a], slots_[a].id) <
+                            std::make_tuple(-weights[b], slots_[b].id);
+                   });
+  voted.resize(kMaxNumVotedSubmaps);
+  return voted;
+}
+
+std::vector<std::vector<PoseVote>> PlaceIndex::VotesBySlot(
+    const std::vector<SlotVote>& votes,
+    const std::vector<uint32_t>& slots) const {
+  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  std::vector<uint32_t> ranks(slots_.size(), kNone);
+  for (uint32_t k = 0; k < slots.size(); ++k) ranks[slots[k]] = k;
+  std::vector<std::vector<PoseVote>> votes_by_slot(slots.size());
+  for (const SlotVote& vote : votes) {
+    if (ranks[vote.slot] == kNone) continue;
+    votes_by_slot[ranks[vote.slot]].push_back(vote.vote);
+  }
+  return votes_by_slot;
 }
 
 std::vector<RetrievalCandidate> PlaceIndex::Rank(
     const FeatureSet& features, const Predicate& is_excluded) const {
-  if (features.features.empty() || descriptor_length_ == 0) return {};
-  CHECK_EQ(features.descriptors.rows(), descriptor_length_);
-  CHECK_EQ(features.descriptors.cols(), features.features.size());
-  std::vector<char> excluded(slots_.size(), 0);
-  if (is_excluded) {
-    for (const auto& [id, slot] : slots_by_id_)
-      excluded[slot] = is_excluded(id);
+  if (features.features.empty()) return {};
+  std::vector<char> excluded(slots_.size(), 1);
+  for (const auto& [id, slot] : slots_by_id_) {
+    excluded[slot] = is_excluded && is_excluded(id);
   }
   const Eigen::Vector2d centroid = KeypointCentroid(features);
-  std::vector<std::vector<WeightedCorrespondence>> correspondences =
-      Correspond(features, centroid, excluded);
+  const std::vector<KeypointPair> pairs =
+      PairsToSeek(options_.pairs, options_.num_sought_partners,
+                  static_cast<size_t>(options_.max_num_sought_pairs), features);
+  const std::vector<SlotVote> votes = CollectVotes(pairs, centroid, excluded);
+  const std::vector<uint32_t> slots = MostVoted(votes);
+  const std::vector<std::vector<PoseVote>> votes_by_slot =
+      VotesBySlot(votes, slots);
   std::vector<RetrievalCandidate> candidates;
-  for (const auto& [id, slot] : slots_by_id_) {
-    const std::optional<double> weight = HeaviestVote(
-        options_.votes, centroid, std::move(correspondences[slot]));
-    if (!weight) continue;
-    // The more features both have, the more agree by chance.
-    const double num_features =
-        std::sqrt(static_cast<double>(slots_[slot].features.size()) *
-                  static_cast<double>(features.features.size()));
-    candidates.push_back({id, std::sqrt(*weight / num_features)});
+  for (size_t k = 0; k < slots.size(); ++k) {
+    const std::vector<VotedPose> poses = HeaviestPoses(
+        options_.pose_bins, options_.max_num_poses, centroid, votes_by_slot[k]);
+    const Slot& slot = slots_[slots[k]];
+    // The more pairs both have, the more agree by chance.
+    const double num_pairs = std::sqrt(static_cast<double>(slot.num_pairs) *
+                                       static_cast<double>(pairs.size()));
+    candidates.push_back({slot.id, poses.front().weight / num_pairs, {}});
+    for (const VotedPose& pose : poses) {
+      candidates.back().T_reference_query.push_back(pose.T_reference_query);
+    }
   }
-  // Ties stay in the order of ids.
-  std::stable_sort(
-      candidates.begin(), candidates.end(),
-      [](const RetrievalCandidate& a, const RetrievalCandidate& b) {
-        return a.score > b.score;
-      });
+  std::sort(candidates.begin(), candidates.end(),
+            [](const RetrievalCandidate& a, const RetrievalCandidate& b) {
+              return std::make_tuple(-a.score, a.id) <
+                     std::make_tuple(-b.score, b.id);
+            });
   return candidates;
 }
 

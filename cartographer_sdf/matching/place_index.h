@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Finds the remembered submaps that look like a new one without comparing it
-// with each: every feature of the query finds its nearest neighbours among the
-// features of all submaps at once, and pairs of neighbours in the same submap
-// vote for poses. A neighbour's weight is how much nearer it is than the last
-// one found ([McCann2012]); features found in many submaps are less distinctive
-// and weigh less. Heuristic; verification decides.
+// Retrieval: which submaps may show the same place as a query, without a look
+// at each of them. The index is an inverted file: pairs of keypoints
+// (keypoint_pairs.h) are stored under what does not depend on the pose, and a
+// pair of the query that finds one of a submap votes for the pose that takes it
+// there. Pairs found in few submaps weigh more. Heuristic; verification
+// decides.
 
 #ifndef CARTOGRAPHER_SDF_MATCHING_PLACE_INDEX_H_
 #define CARTOGRAPHER_SDF_MATCHING_PLACE_INDEX_H_
 
 #include <Eigen/Core>
-#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -21,56 +21,68 @@
 #include "cartographer_sdf/feature/descriptor.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/matching/keypoint_pairs.h"
 #include "cartographer_sdf/matching/pose_voter.h"
 
 namespace cartographer_sdf {
 
 struct RetrievalOptions {
-  // Nearest neighbours of each query feature among all features of the index.
-  // Larger: more recall, more time.
-  int num_neighbours = 100;
-  // Features whose clearance differs by more than this are not neighbours [m].
-  double max_clearance_difference_meters = 0.2;
-  PoseVotingOptions votes = {250, 0.25, 0.35, 1., 0.75, 0.2};
+  KeypointPairOptions pairs;
+  // Each keypoint of a submap is stored with so many partners, and each of a
+  // query is sought with so many. Larger: more recall, more memory, slower.
+  int num_stored_partners = 3;
+  int num_sought_partners = 6;
+  // Pairs of one submap, those of the strongest keypoints. A stored pair takes
+  // some 20 bytes.
+  int max_num_stored_pairs = 360;
+  int max_num_sought_pairs = 1000;
+  // A query looks at so many stored pairs, those under the rarest keys: this
+  // bounds its time, however large the index.
+  int max_num_visited_pairs = 300000;
+  // Pairs that vote for poses in one bin agree.
+  PoseBinOptions pose_bins = {0.75, 0.2};
+  // Poses returned of each candidate.
+  int max_num_poses = 4;
   // Candidates with a lower score are dropped, ...
-  double min_score = 0.06;
+  double min_score = 0.004;
   // ... except the best `min_num_candidates`. Never more than
   // `max_num_candidates` are returned.
   int min_num_candidates = 10;
-  int max_num_candidates = 200;
+  int max_num_candidates = 20;
 };
 [[nodiscard]] std::string Validate(const RetrievalOptions& options);
 
 struct RetrievalCandidate {
   SubmapId id;
-  // Square root of the weight of the best pose over the geometric mean of both
-  // numbers of features: comparable between queries, and nearly so between
-  // maps.
+  // Weight of the best pose over the geometric mean of both numbers of pairs:
+  // comparable between queries, and nearly so between maps.
   double score;
+  // Poses of the query in the candidate, best first.
+  std::vector<Rigid2> T_reference_query;
 };
 
 // Thread-compatible: queries may run concurrently, Add and Remove need
 // exclusive access. Results do not depend on the order in which submaps were
-// added, or on removed submaps.
+// added, or on removed submaps, unless max_num_visited_pairs cuts them short.
 class PlaceIndex {
  public:
-  // Returns whether a submap is excluded: its features are not even neighbours.
+  // Returns whether a submap is excluded: its pairs are not even looked at.
   using Predicate = std::function<bool(const SubmapId&)>;
 
   explicit PlaceIndex(const RetrievalOptions& options);
 
-  // The id must be new, and descriptors must have the same length as before.
-  // Amortised cost: n log n for n features in total.
+  // The id must be new. Amortised time: linear in the number of features.
   void Add(const SubmapId& id, const FeatureSet& features);
-  // Returns whether the submap was present. Linear in the total number of
-  // features.
+  // Returns whether the submap was present. Amortised constant time.
   bool Remove(const SubmapId& id);
   [[nodiscard]] bool Contains(const SubmapId& id) const;
   [[nodiscard]] size_t size() const { return slots_by_id_.size(); }
+  // Memory held [bytes].
+  [[nodiscard]] size_t MemoryUse() const;
 
-  // Returns candidates, best first. Time grows with the total number of
-  // features times those of the query, with a small constant (times:
-  // retrieval_benchmark).
+  // Returns candidates, best first. Time is bounded by
+  // RetrievalOptions::max_num_visited_pairs, but for some nanoseconds for each
+  // submap (times: retrieval_benchmark).
   [[nodiscard]] std::vector<RetrievalCandidate> Query(
       const FeatureSet& features, const Predicate& is_excluded = {}) const;
   // Returns the best `num_candidates`, whatever their scores.
@@ -79,56 +91,61 @@ class PlaceIndex {
       const Predicate& is_excluded = {}) const;
 
  private:
-  struct StoredFeature {
-    Eigen::Vector2f position;  // submap frame [m]
-    float orientation;         // [rad]
+  // A stored pair, in the frame of its submap's slot.
+  struct Entry {
+    uint32_t key;
+    uint32_t slot : 24;
+    uint32_t direction : 8;  // in 1 / 256 of a turn
+    int16_t x, y;            // middle, from the slot's origin [cm]
   };
   struct Slot {
     SubmapId id;
-    std::vector<StoredFeature> features;
+    Eigen::Vector2f origin = Eigen::Vector2f::Zero();  // submap frame [m]
+    int num_pairs = 0;
+    bool is_removed = false;
   };
-  // Features of one kind from a few submaps, ordered by clearance.
-  struct Segment {
-    std::vector<float> clearances;
-    Eigen::ArrayXXf descriptors;  // one row per feature
-    std::vector<int> slots;
-    std::vector<int> features;  // indices in the slot
+  // A key of one of a query's pairs.
+  struct Lookup {
+    size_t bucket_size;
+    size_t pair;
+    uint32_t key;
   };
-  struct Neighbour {
-    float squared_distance;
-    int slot;
-    int feature;
+  // A vote for a pose of the query in the submap of a slot.
+  struct SlotVote {
+    uint32_t slot;
+    PoseVote vote;
   };
-
-  [[nodiscard]] static Segment MakeSegment(const FeatureSet& features,
-                                           std::vector<int> columns, int slot);
-  [[nodiscard]] static Segment SelectRows(const Segment& segment,
-                                          const std::vector<int>& rows);
-  [[nodiscard]] static Segment Merge(const Segment& a, const Segment& b);
-  [[nodiscard]] std::vector<Neighbour> FindNeighbours(
-      const Feature& feature, const Eigen::Ref<const Eigen::VectorXf>& query,
+  [[nodiscard]] std::vector<Entry>& BucketOf(uint32_t key);
+  [[nodiscard]] const std::vector<Entry>& BucketOf(uint32_t key) const;
+  // Doubles the number of buckets.
+  void Grow();
+  // Forgets the pairs of removed submaps.
+  void Sweep();
+  // Returns where to look for the pairs, rarest keys first, as far as
+  // RetrievalOptions::max_num_visited_pairs allows.
+  [[nodiscard]] std::vector<Lookup> PlanLookups(
+      const std::vector<KeypointPair>& pairs) const;
+  [[nodiscard]] std::vector<SlotVote> CollectVotes(
+      const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
       const std::vector<char>& is_excluded) const;
-  // Calls visit(squared distance, row) for the rows of similar clearance.
-  template <typename Visitor>
-  void VisitDistances(const Segment& segment, double clearance,
-                      const Eigen::Ref<const Eigen::VectorXf>& query,
-                      const Visitor& visit) const;
+  // Returns the slots with the most votes for their numbers of pairs.
+  [[nodiscard]] std::vector<uint32_t> MostVoted(
+      const std::vector<SlotVote>& votes) const;
+  // Returns the votes for each of the slots.
+  [[nodiscard]] std::vector<std::vector<PoseVote>> VotesBySlot(
+      const std::vector<SlotVote>& votes,
+      const std::vector<uint32_t>& slots) const;
   // Returns all submaps with a vote, best first.
   [[nodiscard]] std::vector<RetrievalCandidate> Rank(
       const FeatureSet& features, const Predicate& is_excluded) const;
-  // Returns the correspondences of the query's features with those of the
-  // submap in each slot.
-  [[nodiscard]] std::vector<std::vector<WeightedCorrespondence>> Correspond(
-      const FeatureSet& query, const Eigen::Vector2d& centroid,
-      const std::vector<char>& is_excluded) const;
 
   const RetrievalOptions options_;
-  Eigen::Index descriptor_length_ = 0;  // 0: not known yet
-  std::map<SubmapId, int> slots_by_id_;
+  std::map<SubmapId, uint32_t> slots_by_id_;
   std::vector<Slot> slots_;
-  std::vector<int> free_slots_;
-  // Each segment has less than half the features of the one before.
-  std::array<std::vector<Segment>, kNumKeypointKinds> segments_;
+  std::vector<uint32_t> free_slots_;
+  std::vector<std::vector<Entry>> buckets_;  // their number is a power of two
+  size_t num_entries_ = 0;
+  size_t num_removed_entries_ = 0;
 };
 
 }  // namespace cartographer_sdf

@@ -23,19 +23,12 @@ float WrapAngle(float angle) {
   return angle;
 }
 
-// A pose that takes the query's centroid to (x, y).
-struct Vote {
-  uint64_t bin;
-  float x, y, rotation;
-  float weight;
-};
-
 class PoseRaster {
  public:
-  explicit PoseRaster(const PoseVotingOptions& options)
-      : pitch_(static_cast<float>(options.bin_distance_meters)),
+  explicit PoseRaster(const PoseBinOptions& options)
+      : pitch_(static_cast<float>(options.distance_meters)),
         num_rotations_(
-            std::max(1, static_cast<int>(2. * M_PI / options.bin_rotation))) {}
+            std::max(1, static_cast<int>(2. * M_PI / options.rotation))) {}
 
   // The rotation lies in [-pi, pi]. No bin spans the cut at pi, so that the
   // mean of a bin's rotations is their mean direction.
@@ -63,15 +56,14 @@ class PoseRaster {
 class PairVoter {
  public:
   explicit PairVoter(const PoseVotingOptions& options)
-      : raster_(options),
-        max_length_(static_cast<float>(options.max_length_difference_meters)),
+      : max_length_(static_cast<float>(options.max_length_difference_meters)),
         max_rotation_(static_cast<float>(options.max_orientation_difference)),
         min_squared_length_(static_cast<float>(options.min_baseline_meters *
                                                options.min_baseline_meters)) {}
 
   [[nodiscard]] float max_rotation() const { return max_rotation_; }
 
-  [[nodiscard]] std::optional<Vote> operator()(
+  [[nodiscard]] std::optional<PoseVote> operator()(
       const WeightedCorrespondence& first,
       const WeightedCorrespondence& second) const {
     const Eigen::Vector2f query = second.p_centroid - first.p_centroid;
@@ -94,23 +86,21 @@ class PairVoter {
     const Eigen::Vector2f r = 0.5f * (first.p_reference + second.p_reference);
     const float x = r.x() - (c * q.x() - s * q.y());
     const float y = r.y() - (s * q.x() + c * q.y());
-    return Vote{raster_.BinAt(x, y, rotation), x, y, rotation,
-                first.weight * second.weight};
+    return PoseVote{x, y, rotation, first.weight * second.weight};
   }
 
  private:
-  const PoseRaster raster_;
   const float max_length_;
   const float max_rotation_;
   const float min_squared_length_;
 };
 
 // `correspondences` are ordered by rotation.
-std::vector<Vote> CollectVotes(
+std::vector<PoseVote> CollectVotes(
     const PoseVotingOptions& options,
     const std::vector<WeightedCorrespondence>& correspondences) {
   const PairVoter vote_of(options);
-  std::vector<Vote> votes;
+  std::vector<PoseVote> votes;
   const size_t n = correspondences.size();
   for (size_t a = 0; a < n; ++a) {
     // Correspondences that follow in rotation, around the circle.
@@ -123,7 +113,7 @@ std::vector<Vote> CollectVotes(
           vote_of.max_rotation()) {
         break;
       }
-      const std::optional<Vote> vote = vote_of(correspondences[a], second);
+      const std::optional<PoseVote> vote = vote_of(correspondences[a], second);
       if (vote) votes.push_back(*vote);
     }
   }
@@ -137,18 +127,27 @@ struct Cluster {
   float x, y, rotation;
 };
 
-std::vector<Cluster> ClusterVotes(std::vector<Vote> votes) {
+std::vector<Cluster> ClusterVotes(const PoseBinOptions& options,
+                                  const std::vector<PoseVote>& votes) {
+  const PoseRaster raster(options);
+  std::vector<std::pair<uint64_t, PoseVote>> binned;
+  binned.reserve(votes.size());
+  for (const PoseVote& vote : votes) {
+    binned.emplace_back(raster.BinAt(vote.x, vote.y, vote.rotation), vote);
+  }
   // Sorted, so that sums round the same whatever the order of the votes.
-  std::sort(votes.begin(), votes.end(), [](const Vote& a, const Vote& b) {
-    return std::tie(a.bin, a.x, a.y, a.rotation, a.weight) <
-           std::tie(b.bin, b.x, b.y, b.rotation, b.weight);
-  });
+  const auto key = [](const std::pair<uint64_t, PoseVote>& item) {
+    const PoseVote& vote = item.second;
+    return std::tie(item.first, vote.x, vote.y, vote.rotation, vote.weight);
+  };
+  std::sort(binned.begin(), binned.end(),
+            [&key](const auto& a, const auto& b) { return key(a) < key(b); });
   std::vector<Cluster> clusters;
-  for (size_t begin = 0; begin < votes.size();) {
-    Cluster sum{votes[begin].bin, 0.f, 0.f, 0.f, 0.f};
+  for (size_t begin = 0; begin < binned.size();) {
+    Cluster sum{binned[begin].first, 0.f, 0.f, 0.f, 0.f};
     size_t end = begin;
-    for (; end < votes.size() && votes[end].bin == sum.bin; ++end) {
-      const Vote& vote = votes[end];
+    for (; end < binned.size() && binned[end].first == sum.bin; ++end) {
+      const PoseVote& vote = binned[end].second;
       sum.weight += vote.weight;
       sum.x += vote.weight * vote.x;
       sum.y += vote.weight * vote.y;
@@ -163,6 +162,13 @@ std::vector<Cluster> ClusterVotes(std::vector<Vote> votes) {
 
 }  // namespace
 
+std::string Validate(const PoseBinOptions& options) {
+  if (!(options.distance_meters >= 0.01 && options.rotation >= 1e-4)) {
+    return "distance_meters must be at least 0.01 and rotation at least 0.0001";
+  }
+  return "";
+}
+
 std::string Validate(const PoseVotingOptions& options) {
   if (options.max_num_correspondences < 2 ||
       options.max_num_correspondences > 10000) {
@@ -174,12 +180,10 @@ std::string Validate(const PoseVotingOptions& options) {
     return "max_length_difference_meters must be positive and "
            "max_orientation_difference lie between 0 and pi";
   }
-  if (!(options.min_baseline_meters > 0. &&
-        options.bin_distance_meters >= 0.01 && options.bin_rotation >= 1e-4)) {
-    return "min_baseline_meters must be positive, bin_distance_meters at least "
-           "0.01 and bin_rotation at least 0.0001";
+  if (!(options.min_baseline_meters > 0.)) {
+    return "min_baseline_meters must be positive";
   }
-  return "";
+  return Validate(options.bins);
 }
 
 std::string Validate(const HypothesisOptions& options) {
@@ -198,21 +202,12 @@ Eigen::Vector2d KeypointCentroid(const FeatureSet& features) {
   return sum / static_cast<double>(features.features.size());
 }
 
-std::vector<VotedPose> VotePoses(
-    const PoseVotingOptions& options, const int max_num_poses,
-    const Eigen::Vector2d& centroid,
-    std::vector<WeightedCorrespondence> correspondences) {
+std::vector<VotedPose> HeaviestPoses(const PoseBinOptions& options,
+                                     const int max_num_poses,
+                                     const Eigen::Vector2d& centroid,
+                                     const std::vector<PoseVote>& votes) {
   CHECK_EQ(Validate(options), "");
-  correspondences.resize(
-      std::min(correspondences.size(),
-               static_cast<size_t>(options.max_num_correspondences)));
-  std::stable_sort(
-      correspondences.begin(), correspondences.end(),
-      [](const WeightedCorrespondence& a, const WeightedCorrespondence& b) {
-        return a.rotation < b.rotation;
-      });
-  std::vector<Cluster> clusters =
-      ClusterVotes(CollectVotes(options, correspondences));
+  std::vector<Cluster> clusters = ClusterVotes(options, votes);
   const size_t count =
       std::min(clusters.size(), static_cast<size_t>(max_num_poses));
   std::partial_sort(
@@ -230,6 +225,23 @@ std::vector<VotedPose> VotePoses(
                      cluster.weight});
   }
   return poses;
+}
+
+std::vector<VotedPose> VotePoses(
+    const PoseVotingOptions& options, const int max_num_poses,
+    const Eigen::Vector2d& centroid,
+    std::vector<WeightedCorrespondence> correspondences) {
+  CHECK_EQ(Validate(options), "");
+  correspondences.resize(
+      std::min(correspondences.size(),
+               static_cast<size_t>(options.max_num_correspondences)));
+  std::stable_sort(
+      correspondences.begin(), correspondences.end(),
+      [](const WeightedCorrespondence& a, const WeightedCorrespondence& b) {
+        return a.rotation < b.rotation;
+      });
+  return HeaviestPoses(options.bins, max_num_poses, centroid,
+                       CollectVotes(options, correspondences));
 }
 
 std::vector<Rigid2> ProposePoses(const HypothesisOptions& options,

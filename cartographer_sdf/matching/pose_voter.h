@@ -25,6 +25,15 @@
 
 namespace cartographer_sdf {
 
+// The raster of poses. Votes in one bin agree.
+struct PoseBinOptions {
+  // Pitch for the position of the centroid of the query's keypoints [m], ...
+  double distance_meters = 0.5;
+  // ... and for the rotation, approximately [rad].
+  double rotation = 0.10;
+};
+[[nodiscard]] std::string Validate(const PoseBinOptions& options);
+
 struct PoseVotingOptions {
   // Only this many correspondences, the best, are paired. Time grows with the
   // square.
@@ -36,11 +45,7 @@ struct PoseVotingOptions {
   double max_orientation_difference = 0.44;
   // Keypoints nearer than this to each other determine no rotation [m].
   double min_baseline_meters = 1.5;
-  // Pitch of the raster of poses, for the position of the centroid of the
-  // query's keypoints [m], and ...
-  double bin_distance_meters = 0.5;
-  // ... for the rotation, approximately [rad].
-  double bin_rotation = 0.10;
+  PoseBinOptions bins;
 };
 [[nodiscard]] std::string Validate(const PoseVotingOptions& options);
 
@@ -59,6 +64,20 @@ struct VotedPose {
   // Sum over its votes; a vote is the product of two correspondences' weights.
   double weight;
 };
+
+// A vote for the pose that takes the query's centroid to (x, y) in the
+// reference frame [m].
+struct PoseVote {
+  float x, y;
+  float rotation;  // [-pi, pi]
+  float weight;    // positive
+};
+
+// Returns the means of the heaviest bins, at most `max_num_poses`, heaviest
+// first, whatever the order of the votes. `centroid`: in the query frame [m].
+[[nodiscard]] std::vector<VotedPose> HeaviestPoses(
+    const PoseBinOptions& options, int max_num_poses,
+    const Eigen::Vector2d& centroid, const std::vector<PoseVote>& votes);
 
 // Returns at most `max_num_poses` poses, heaviest first. `correspondences` come
 // best first; `centroid` is KeypointCentroid of the query. Fewer than two

@@ -128,18 +128,21 @@ void FindSelfSimilarities(const MatchOptions& options, Place* const place) {
                                        place->features)));
 }
 
-std::optional<Match> MatchPlaces(const MatchOptions& options,
-                                 const Place& reference, const Place& query) {
+std::optional<Match> MatchPlaces(
+    const MatchOptions& options, const Place& reference, const Place& query,
+    const std::vector<Rigid2>& proposed_T_reference_query) {
   CHECK_EQ(Validate(options), "");
   const std::vector<Correspondence> correspondences = FindCorrespondences(
       options.correspondence, reference.features, query.features);
   if (options.method == Method::kPaper) {
     return MatchAsPaper(options, reference, query, correspondences);
   }
-  std::optional<VerifiedPose> verified =
-      VerifyHypotheses(options.verification, reference.surface, query.surface,
-                       ProposePoses(options.hypotheses, reference.features,
-                                    query.features, correspondences));
+  std::vector<Rigid2> hypotheses = ProposePoses(
+      options.hypotheses, reference.features, query.features, correspondences);
+  hypotheses.insert(hypotheses.end(), proposed_T_reference_query.begin(),
+                    proposed_T_reference_query.end());
+  std::optional<VerifiedPose> verified = VerifyHypotheses(
+      options.verification, reference.surface, query.surface, hypotheses);
   if (!verified) return std::nullopt;
   return MakeMatch(options, reference, query, correspondences,
                    *std::move(verified));

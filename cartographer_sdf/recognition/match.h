@@ -77,10 +77,12 @@ struct Match {
 // itself, so that rivals are detected when it is matched with others.
 void FindSelfSimilarities(const MatchOptions& options, Place* place);
 
-// Returns nullopt if there is no pose worth reporting.
-[[nodiscard]] std::optional<Match> MatchPlaces(const MatchOptions& options,
-                                               const Place& reference,
-                                               const Place& query);
+// Returns nullopt if there is no pose worth reporting. Poses that others
+// propose (an index, say) are tried beside those of the correspondences; method
+// kPaper ignores them.
+[[nodiscard]] std::optional<Match> MatchPlaces(
+    const MatchOptions& options, const Place& reference, const Place& query,
+    const std::vector<Rigid2>& proposed_T_reference_query = {});
 
 // Makes a match of a verified pose of method kSdf.
 [[nodiscard]] Match MakeMatch(const MatchOptions& options,

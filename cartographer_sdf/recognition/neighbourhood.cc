@@ -107,6 +107,9 @@ std::string Validate(const NeighbourhoodOptions& options) {
            "100";
   }
   if (options.num_points < 1) return "num_points must be positive";
+  if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {
+    return "max_num_rounds must lie between 0 and 1000";
+  }
   if (!(options.min_overlap_area >= 0. &&
         options.prior_wall_length_meters > 0. &&
         options.prior_contradiction_ratio > 0.)) {

@@ -59,6 +59,9 @@ struct NeighbourhoodOptions {
   // A match with at least this score in its neighbourhood proposes poses to the
   // neighbouring pairs; log-odds.
   double min_proposing_score = 0.;
+  // What is proposed and found likely proposes in its turn, so often. 1: only
+  // matches propose; 0: none do.
+  int max_num_rounds = 4;
   NeighbourhoodWeights weights;
   // The neighbourhood raises the score of a pair by at most this, log-odds: it
   // cannot make up for walls that disagree.

@@ -22,7 +22,7 @@ constexpr size_t kMaxNumProposals = 4;
 // One pose of a pair, verified with its neighbourhood.
 struct Opinion {
   VerifiedPose verified;
-  NeighbourhoodEvidence evidence;
+  Neighbourhood neighbourhood;
   double score;
 };
 
@@ -32,6 +32,11 @@ struct Task {
   const Match* match;  // null where the pair has none
   // Poses that neighbours propose, with the scores of the proposing matches.
   std::vector<PairPose> proposals;
+};
+
+struct Decision {
+  Match match;
+  std::vector<PairPose> proposals;  // to other pairs
 };
 
 IdPair IdsOf(const PairPose& pair) { return {pair.reference, pair.query}; }
@@ -60,41 +65,30 @@ class NeighbourhoodVerifier {
       neighbourhood = Measure(match->pair);
     }
     SetEvidence(neighbourhood.evidence, match);
-    if (match->pair.score < options_.min_proposing_score) return {};
-    for (PairPose& proposal : neighbourhood.proposals) {
-      proposal.score = match->pair.score;
-      // Within one map, the lower id is the reference.
-      if (min_index_gap_ && proposal.query < proposal.reference) {
-        std::swap(proposal.reference, proposal.query);
-        proposal.T_reference_query = proposal.T_reference_query.Inverse();
-      }
-    }
-    return std::move(neighbourhood.proposals);
+    return ProposalsOf(*match, std::move(neighbourhood.proposals));
   }
 
   // Returns the pairs that have proposals or rivals to choose from, by their
   // ids.
   [[nodiscard]] std::vector<Task> CollectTasks(
-      const std::vector<Match>& matches,
-      const std::vector<std::vector<PairPose>>& proposals) const {
+      const std::map<IdPair, Match>& matches,
+      const std::vector<PairPose>& proposals) const {
     std::map<IdPair, Task> tasks;
     const auto task_of = [&tasks](const IdPair& ids) -> Task& {
       return tasks.emplace(ids, Task{ids, nullptr, {}}).first->second;
     };
-    for (const Match& match : matches) {
+    for (const auto& [ids, match] : matches) {
       if (!match.rivals.empty() &&
           match.pair.score >= options_.min_proposing_score) {
-        task_of(IdsOf(match.pair));
+        task_of(ids);
       }
     }
-    for (const std::vector<PairPose>& of_match : proposals) {
-      for (const PairPose& proposal : of_match) {
-        task_of(IdsOf(proposal)).proposals.push_back(proposal);
-      }
+    for (const PairPose& proposal : proposals) {
+      task_of(IdsOf(proposal)).proposals.push_back(proposal);
     }
-    for (const Match& match : matches) {
-      const auto task = tasks.find(IdsOf(match.pair));
-      if (task != tasks.end()) task->second.match = &match;
+    for (auto& [ids, task] : tasks) {
+      const auto match = matches.find(ids);
+      if (match != matches.end()) task.match = &match->second;
     }
     std::vector<Task> result;
     for (auto& [ids, task] : tasks) {
@@ -106,9 +100,20 @@ class NeighbourhoodVerifier {
     return result;
   }
 
+  // Returns the pairs without a match that have proposals, by their ids.
+  [[nodiscard]] std::vector<Task> CollectUnmatched(
+      const std::map<IdPair, Match>& matches,
+      const std::vector<PairPose>& proposals) const {
+    std::vector<PairPose> unmatched;
+    for (const PairPose& proposal : proposals) {
+      if (matches.count(IdsOf(proposal)) == 0) unmatched.push_back(proposal);
+    }
+    return CollectTasks({}, unmatched);
+  }
+
   // Returns the most likely of the match's own pose, its rivals and the
   // proposals; nullopt if none of them can be registered.
-  [[nodiscard]] std::optional<Match> Decide(const Task& task) const {
+  [[nodiscard]] std::optional<Decision> Decide(const Task& task) const {
     const Place& reference = references_.places->at(task.ids.first);
     const Place& query = queries_.places->at(task.ids.second);
     std::vector<Opinion> opinions;
@@ -117,12 +122,11 @@ class NeighbourhoodVerifier {
                      query.surface, PosesOf(task))) {
       Opinion opinion;
       if (verified.score >= options_.min_pair_score) {
-        opinion.evidence = Measure({task.ids.first, task.ids.second,
-                                    verified.T_reference_query})
-                               .evidence;
+        opinion.neighbourhood = Measure(
+            {task.ids.first, task.ids.second, verified.T_reference_query});
       }
-      opinion.score =
-          NeighbourhoodScore(options_, verified.score, opinion.evidence);
+      opinion.score = NeighbourhoodScore(options_, verified.score,
+                                         opinion.neighbourhood.evidence);
       opinion.verified = std::move(verified);
       opinions.push_back(std::move(opinion));
     }
@@ -133,15 +137,35 @@ class NeighbourhoodVerifier {
     const double lead = opinions.size() > 1
                             ? opinions[0].score - opinions[1].score
                             : opinions[0].verified.margin;
-    Match match = MakeMatch(match_options_, reference, query,
-                            std::move(opinions[0].verified));
-    SetEvidence(opinions[0].evidence, &match);
+    Decision decision{MakeMatch(match_options_, reference, query,
+                                std::move(opinions[0].verified)),
+                      {}};
+    Match& match = decision.match;
+    SetEvidence(opinions[0].neighbourhood.evidence, &match);
     match.verdict = Judge(match_options_.verification.judgement, match.evidence,
                           match.pair.score, lead);
-    return match;
+    decision.proposals =
+        ProposalsOf(match, std::move(opinions[0].neighbourhood.proposals));
+    return decision;
   }
 
  private:
+  // The registered neighbours of a match as proposals, with its score; none if
+  // it is too unlikely.
+  [[nodiscard]] std::vector<PairPose> ProposalsOf(
+      const Match& match, std::vector<PairPose> neighbours) const {
+    if (match.pair.score < options_.min_proposing_score) return {};
+    for (PairPose& proposal : neighbours) {
+      proposal.score = match.pair.score;
+      // Within one map, the lower id is the reference.
+      if (min_index_gap_ && proposal.query < proposal.reference) {
+        std::swap(proposal.reference, proposal.query);
+        proposal.T_reference_query = proposal.T_reference_query.Inverse();
+      }
+    }
+    return neighbours;
+  }
+
   [[nodiscard]] Neighbourhood Measure(const PairPose& pair) const {
     return MeasureNeighbourhood(options_, match_options_.verification,
                                 references_, queries_, min_index_gap_, pair);
@@ -201,22 +225,36 @@ class NeighbourhoodVerifier {
   const std::optional<int> min_index_gap_;
 };
 
-// Replaces matches by the decided ones of the same pairs.
-std::vector<Match> Replace(std::vector<Match> matches,
-                           std::vector<std::optional<Match>> decided) {
-  std::map<IdPair, Match> all;
-  for (std::optional<Match>& match : decided) {
-    if (!match) continue;
-    const IdPair ids = IdsOf(match->pair);
-    all.emplace(ids, *std::move(match));
+using Proposals = std::vector<std::vector<PairPose>>;
+
+std::vector<PairPose> Concatenated(const Proposals& proposals) {
+  std::vector<PairPose> all;
+  for (const std::vector<PairPose>& some : proposals) {
+    all.insert(all.end(), some.begin(), some.end());
   }
-  for (Match& match : matches) {
-    const IdPair ids = IdsOf(match.pair);
-    all.try_emplace(ids, std::move(match));
+  return all;
+}
+
+// Runs the tasks and enters their decisions; returns what these propose.
+std::vector<PairPose> DecideAll(const NeighbourhoodVerifier& verifier,
+                                const std::vector<Task>& tasks,
+                                const Executor& executor,
+                                TaskProgress* const progress,
+                                std::map<IdPair, Match>* const matches) {
+  std::vector<std::optional<Decision>> decisions(tasks.size());
+  executor(tasks.size(), [&](const size_t k) {
+    decisions[k] = verifier.Decide(tasks[k]);
+    progress->TaskIsDone();
+  });
+  std::vector<PairPose> proposals;
+  for (std::optional<Decision>& decision : decisions) {
+    if (!decision) continue;
+    proposals.insert(proposals.end(), decision->proposals.begin(),
+                     decision->proposals.end());
+    const IdPair ids = IdsOf(decision->match.pair);
+    matches->insert_or_assign(ids, std::move(decision->match));
   }
-  std::vector<Match> result;
-  for (auto& [ids, match] : all) result.push_back(std::move(match));
-  return result;
+  return proposals;
 }
 
 }  // namespace
@@ -228,20 +266,32 @@ std::vector<Match> VerifyNeighbourhoods(
     const Executor& executor, const ProgressCallback& on_progress) {
   const NeighbourhoodVerifier verifier(options, match_options, references,
                                        queries, min_index_gap);
-  std::vector<std::vector<PairPose>> proposals(matches.size());
+  Proposals first_proposals(matches.size());
   TaskProgress first_half(on_progress, matches.size(), 0., 0.5);
   executor(matches.size(), [&](const size_t k) {
-    proposals[k] = verifier.VerifyMatch(&matches[k]);
+    first_proposals[k] = verifier.VerifyMatch(&matches[k]);
     first_half.TaskIsDone();
   });
-  const std::vector<Task> tasks = verifier.CollectTasks(matches, proposals);
-  std::vector<std::optional<Match>> decided(tasks.size());
-  TaskProgress second_half(on_progress, tasks.size(), 0.5, 1.);
-  executor(tasks.size(), [&](const size_t k) {
-    decided[k] = verifier.Decide(tasks[k]);
-    second_half.TaskIsDone();
-  });
-  return Replace(std::move(matches), std::move(decided));
+  std::map<IdPair, Match> by_ids;
+  for (Match& match : matches) {
+    const IdPair ids = IdsOf(match.pair);
+    by_ids.emplace(ids, std::move(match));
+  }
+  std::vector<PairPose> proposals = Concatenated(first_proposals);
+  double done = 0.5;
+  for (int round = 0; round < options.max_num_rounds; ++round) {
+    const std::vector<Task> tasks =
+        round == 0 ? verifier.CollectTasks(by_ids, proposals)
+                   : verifier.CollectUnmatched(by_ids, proposals);
+    if (tasks.empty()) break;
+    // Each round has fewer tasks than the one before.
+    TaskProgress progress(on_progress, tasks.size(), done, 0.5 * (1. + done));
+    done = 0.5 * (1. + done);
+    proposals = DecideAll(verifier, tasks, executor, &progress, &by_ids);
+  }
+  std::vector<Match> result;
+  for (auto& [ids, match] : by_ids) result.push_back(std::move(match));
+  return result;
 }
 
 void VerifyNeighbourhood(const NeighbourhoodOptions& options,

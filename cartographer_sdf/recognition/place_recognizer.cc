@@ -48,7 +48,8 @@ PlaceRecognizer::Recognition PlaceRecognizer::MatchCandidates(
   recognition.num_candidates = candidates.size();
   for (const RetrievalCandidate& candidate : candidates) {
     std::optional<Match> match =
-        MatchPlaces(match_options_, places_.at(candidate.id), query);
+        MatchPlaces(match_options_, places_.at(candidate.id), query,
+                    candidate.T_reference_query);
     if (match) recognition.matches.push_back(*std::move(match));
   }
   std::sort(recognition.matches.begin(), recognition.matches.end(),

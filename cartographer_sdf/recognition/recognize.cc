@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
@@ -17,15 +17,18 @@ namespace cartographer_sdf {
 namespace {
 
 using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
+// Pairs to match, with poses that the index proposes (reference <- query).
+using ProposedPairs = std::map<IdPair, std::vector<Rigid2>>;
 
-// Returns the candidates of every query among the references.
-std::vector<IdPair> RetrievePairs(
+// Calls propose(reference, query, poses) for what the index proposes.
+template <typename Propose>
+void RetrievePairs(
     const RetrievalOptions& options,
     const std::map<SubmapId, Place>& references,
     const std::map<SubmapId, Place>& queries,
     const std::function<bool(const SubmapId& reference, const SubmapId& query)>&
         is_excluded,
-    const Executor& executor) {
+    const Executor& executor, const Propose& propose) {
   PlaceIndex index(options);
   for (const auto& [id, place] : references) index.Add(id, place.features);
   std::vector<const Place*> places;
@@ -40,59 +43,68 @@ std::vector<IdPair> RetrievePairs(
     }
     candidates[k] = index.Query(places[k]->features, predicate);
   });
-  std::vector<IdPair> pairs;
   for (size_t k = 0; k < places.size(); ++k) {
     for (const RetrievalCandidate& candidate : candidates[k]) {
-      pairs.emplace_back(candidate.id, places[k]->id);
+      propose(candidate.id, places[k]->id, candidate.T_reference_query);
     }
   }
-  return pairs;
 }
 
-std::set<IdPair> PairsWithin(const RecognitionOptions& options,
-                             const std::map<SubmapId, Place>& places,
-                             const Executor& executor) {
+void Append(const std::vector<Rigid2>& poses, const bool inverted,
+            std::vector<Rigid2>* const proposed) {
+  for (const Rigid2& pose : poses) {
+    proposed->push_back(inverted ? pose.Inverse() : pose);
+  }
+}
+
+ProposedPairs PairsWithin(const RecognitionOptions& options,
+                          const std::map<SubmapId, Place>& places,
+                          const Executor& executor) {
   const auto share_scans = [&options](const SubmapId& a, const SubmapId& b) {
     return ShareScans(a, b, options.min_index_gap);
   };
-  std::set<IdPair> pairs;
+  ProposedPairs pairs;
   if (options.use_retrieval) {
-    for (const IdPair& pair : RetrievePairs(options.retrieval, places, places,
-                                            share_scans, executor)) {
-      pairs.insert(std::minmax(pair.first, pair.second));
-    }
+    RetrievePairs(options.retrieval, places, places, share_scans, executor,
+                  [&pairs](const SubmapId& reference, const SubmapId& query,
+                           const std::vector<Rigid2>& poses) {
+                    // The lower id is the reference.
+                    Append(poses, query < reference,
+                           &pairs[std::minmax(reference, query)]);
+                  });
     return pairs;
   }
   for (auto reference = places.begin(); reference != places.end();
        ++reference) {
     for (auto query = std::next(reference); query != places.end(); ++query) {
       if (share_scans(reference->first, query->first)) continue;
-      pairs.emplace(reference->first, query->first);
+      pairs[{reference->first, query->first}];
     }
   }
   return pairs;
 }
 
-// With retrieval, either submap may be a candidate of the other.
-std::set<IdPair> PairsBetween(const RecognitionOptions& options,
-                              const std::map<SubmapId, Place>& references,
-                              const std::map<SubmapId, Place>& queries,
-                              const Executor& executor) {
-  std::set<IdPair> pairs;
+ProposedPairs PairsBetween(const RecognitionOptions& options,
+                           const std::map<SubmapId, Place>& references,
+                           const std::map<SubmapId, Place>& queries,
+                           const Executor& executor) {
+  ProposedPairs pairs;
   if (options.use_retrieval) {
-    for (const IdPair& pair :
-         RetrievePairs(options.retrieval, references, queries, {}, executor)) {
-      pairs.insert(pair);
-    }
-    for (const IdPair& pair :
-         RetrievePairs(options.retrieval, queries, references, {}, executor)) {
-      pairs.emplace(pair.second, pair.first);
-    }
+    RetrievePairs(options.retrieval, references, queries, {}, executor,
+                  [&pairs](const SubmapId& reference, const SubmapId& query,
+                           const std::vector<Rigid2>& poses) {
+                    Append(poses, false, &pairs[{reference, query}]);
+                  });
+    RetrievePairs(options.retrieval, queries, references, {}, executor,
+                  [&pairs](const SubmapId& query, const SubmapId& reference,
+                           const std::vector<Rigid2>& poses) {
+                    Append(poses, true, &pairs[{reference, query}]);
+                  });
     return pairs;
   }
   for (const auto& reference : references) {
     for (const auto& query : queries) {
-      pairs.emplace(reference.first, query.first);
+      pairs[{reference.first, query.first}];
     }
   }
   return pairs;
@@ -101,17 +113,24 @@ std::set<IdPair> PairsBetween(const RecognitionOptions& options,
 std::vector<Match> MatchPairs(const MatchOptions& options,
                               const std::map<SubmapId, Place>& references,
                               const std::map<SubmapId, Place>& queries,
-                              const std::set<IdPair>& id_pairs,
+                              const ProposedPairs& proposed,
                               const Executor& executor,
                               const ProgressCallback& on_progress) {
-  std::vector<std::pair<const Place*, const Place*>> pairs;
-  for (const auto& [reference, query] : id_pairs) {
-    pairs.emplace_back(&references.at(reference), &queries.at(query));
+  struct Pair {
+    const Place* reference;
+    const Place* query;
+    const std::vector<Rigid2>* poses;
+  };
+  std::vector<Pair> pairs;
+  for (const auto& [ids, poses] : proposed) {
+    pairs.push_back(
+        {&references.at(ids.first), &queries.at(ids.second), &poses});
   }
   std::vector<std::optional<Match>> found(pairs.size());
   TaskProgress progress(on_progress, pairs.size());
   executor(pairs.size(), [&](const size_t k) {
-    found[k] = MatchPlaces(options, *pairs[k].first, *pairs[k].second);
+    found[k] = MatchPlaces(options, *pairs[k].reference, *pairs[k].query,
+                           *pairs[k].poses);
     progress.TaskIsDone();
   });
   std::vector<Match> matches;

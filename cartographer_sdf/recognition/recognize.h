@@ -25,10 +25,10 @@ struct RecognitionOptions {
   // Submaps of one trajectory are matched if their indices differ by at least
   // this; nearer ones share scans.
   int min_index_gap = 3;
-  // Whether to match only pairs that an index of all features proposes;
+  // Whether to match only pairs that an index of all submaps proposes;
   // otherwise all are matched, and time grows with the square of the number of
   // submaps.
-  bool use_retrieval = false;
+  bool use_retrieval = true;
   RetrievalOptions retrieval;
   // Whether to verify matches together with the neighbours of both submaps.
   // Localization verifies whole placements instead (localization/).

@@ -42,10 +42,10 @@ DEFINE_bool(agree, false,
             "Accept only matches that agree with each other, as in "
             "close_loops. Only for method sdf.");
 
-DEFINE_bool(retrieval, false,
-            "Match only the pairs of submaps that an index of all features "
-            "proposes, whatever use_retrieval says: much faster on large maps, "
-            "but misses some pairs.");
+DEFINE_bool(all_pairs, false,
+            "Match every pair of submaps, not only those that an index of all "
+            "submaps proposes: for studies; takes time quadratic in their "
+            "number.");
 
 namespace cartographer_sdf {
 namespace {
@@ -62,7 +62,7 @@ absl::StatusOr<MethodOptions> OptionsOfFlags() {
     recognition.verify_neighbourhoods = false;
   }
   if (FLAGS_alone) recognition.verify_neighbourhoods = false;
-  if (FLAGS_retrieval) recognition.use_retrieval = true;
+  if (FLAGS_all_pairs) recognition.use_retrieval = false;
   if (!FLAGS_neighbour_terms.empty() && !recognition.verify_neighbourhoods) {
     return UsageError(
         "--neighbour_terms needs method sdf, and neighbourhoods that are "
@@ -199,11 +199,12 @@ Subcommand MatchSubcommand() {
       "match",
       "find submaps of one or two maps that see the same place",
       "--input A.pbstream [--query B.pbstream] --output M.csv "
-      "[--method sdf|paper|shape_context] [--retrieval] [--places P.places] "
+      "[--method sdf|paper|shape_context] [--all_pairs] [--places P.places] "
       "[--alone] [--agree]",
-      "Matches every pair of submaps without a pose prior and writes the best "
-      "pose of each pair that has one, accepted or not, with its evidence. "
-      "Does not optimise the map.\n\n"
+      "Matches the pairs of submaps that an index proposes, and those that "
+      "their matches propose, without a pose prior, and writes the best pose "
+      "of each pair that has one, accepted or not, with its evidence. Does not "
+      "optimise the map.\n\n"
       "The columns x, y, yaw are the pose of the query submap in the frame of "
       "the reference submap [m, rad]; a higher score is more certain (sdf: "
       "log-odds of being right; paper and shape_context: number of "
@@ -214,7 +215,7 @@ Subcommand MatchSubcommand() {
       "contradict it through the odometry between them, or if it is uncertain "
       "and no other supports it. Its verdict gives the reason.",
       {"input", "output"},
-      {"query", "method", "retrieval", "places", "alone", "agree", "terms",
+      {"query", "method", "all_pairs", "places", "alone", "agree", "terms",
        "neighbour_terms", "options_in_force", "configuration_directory",
        "configuration_basename", "threads"},
       &RunMatch};

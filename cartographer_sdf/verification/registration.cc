@@ -43,7 +43,7 @@ Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
   return Eigen::Vector2d(-v.y(), v.x());
 }
 
-constexpr size_t kChunkSize = 64;
+constexpr size_t kPrefetchedPoints = 64;
 
 // Both columns of the four cells around a point.
 void PrefetchCells(const SurfaceModel& field, const Eigen::Vector2d& cells) {
@@ -78,9 +78,9 @@ void VisitField(const SurfaceModel& field,
   const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
   const Eigen::Matrix2d R_field_grid = geometry.T_submap_grid.RotationMatrix();
   const double half_cell = 0.5 * geometry.resolution;
-  std::array<Eigen::Vector2d, kChunkSize> cells;
-  for (size_t begin = 0; begin < count; begin += kChunkSize) {
-    const size_t size = std::min(kChunkSize, count - begin);
+  std::array<Eigen::Vector2d, kPrefetchedPoints> cells;
+  for (size_t begin = 0; begin < count; begin += kPrefetchedPoints) {
+    const size_t size = std::min(kPrefetchedPoints, count - begin);
     // The cells lie far apart in memory: all are on their way before the first
     // is looked at.
     for (size_t k = 0; k < size; ++k) {
@@ -131,23 +131,42 @@ void AddBackward(const SurfaceModel& field,
              });
 }
 
+// The coarse half of the iterations brings the pose near with a third of the
+// points and the wide kernels; the fine half settles it.
+struct Iterations {
+  int begin;
+  int end;
+};
+Iterations CoarseHalf(const RegistrationOptions& options) {
+  return {0, (options.num_iterations + 1) / 2};
+}
+Iterations FineHalf(const RegistrationOptions& options) {
+  return {(options.num_iterations + 1) / 2, options.num_iterations};
+}
+constexpr int kCoarseDivisor = 3;
+
+double KernelScale(const RegistrationOptions& options, const int iteration) {
+  if (options.num_iterations == 1) return options.initial_kernel_scale_meters;
+  return options.initial_kernel_scale_meters *
+         std::pow(
+             options.final_kernel_scale_meters /
+                 options.initial_kernel_scale_meters,
+             static_cast<double>(iteration) / (options.num_iterations - 1));
+}
+
+// Calls add_residuals(pose, kernel scale, divisor of the number of points,
+// equations) for each iteration.
 template <typename AddResiduals>
 std::optional<Rigid2> GaussNewton(const RegistrationOptions& options,
+                                  const Iterations& iterations,
                                   const Rigid2& guess,
                                   const AddResiduals& add_residuals) {
   CHECK_EQ(Validate(options), "");
   Rigid2 pose = guess;
-  const double shrink = options.num_iterations > 1
-                            ? std::pow(options.final_kernel_scale_meters /
-                                           options.initial_kernel_scale_meters,
-                                       1. / (options.num_iterations - 1))
-                            : 1.;
-  double scale = options.initial_kernel_scale_meters;
-  for (int k = 0; k < options.num_iterations; ++k, scale *= shrink) {
+  for (int k = iterations.begin; k < iterations.end; ++k) {
     NormalEquations equations;
-    // A third of the points is enough to come near.
-    const int divisor = 2 * k < options.num_iterations ? 3 : 1;
-    add_residuals(pose, scale, divisor, &equations);
+    const int divisor = k < CoarseHalf(options).end ? kCoarseDivisor : 1;
+    add_residuals(pose, KernelScale(options, k), divisor, &equations);
     if (equations.sum_of_weights * divisor < kMinSumOfWeights) {
       return std::nullopt;
     }
@@ -181,6 +200,19 @@ void AddBothWays(const RegistrationOptions& options,
               T_reference_query, scale, equations);
 }
 
+std::optional<Rigid2> RegisterBothWays(const RegistrationOptions& options,
+                                       const Iterations& iterations,
+                                       const SurfaceModel& reference,
+                                       const SurfaceModel& query,
+                                       const Rigid2& guess) {
+  return GaussNewton(options, iterations, guess,
+                     [&](const Rigid2& pose, const double scale,
+                         const int divisor, NormalEquations* const equations) {
+                       AddBothWays(options, reference, query, pose, scale,
+                                   divisor, equations);
+                     });
+}
+
 }  // namespace
 
 std::string Validate(const RegistrationOptions& options) {
@@ -199,16 +231,30 @@ std::string Validate(const RegistrationOptions& options) {
   return "";
 }
 
+std::optional<Rigid2> RegisterCoarsely(const RegistrationOptions& options,
+                                       const SurfaceModel& reference,
+                                       const SurfaceModel& query,
+                                       const Rigid2& guess_T_reference_query) {
+  return RegisterBothWays(options, CoarseHalf(options), reference, query,
+                          guess_T_reference_query);
+}
+
+std::optional<Rigid2> RegisterFinely(const RegistrationOptions& options,
+                                     const SurfaceModel& reference,
+                                     const SurfaceModel& query,
+                                     const Rigid2& coarse_T_reference_query) {
+  return RegisterBothWays(options, FineHalf(options), reference, query,
+                          coarse_T_reference_query);
+}
+
 std::optional<Rigid2> RegisterSubmaps(const RegistrationOptions& options,
                                       const SurfaceModel& reference,
                                       const SurfaceModel& query,
                                       const Rigid2& guess_T_reference_query) {
-  return GaussNewton(options, guess_T_reference_query,
-                     [&](const Rigid2& pose, const double scale,
-                         const int divisor, NormalEquations* const equations) {
-                       AddBothWays(options, reference, query, pose, scale,
-                                   divisor, equations);
-                     });
+  const std::optional<Rigid2> coarse =
+      RegisterCoarsely(options, reference, query, guess_T_reference_query);
+  if (!coarse) return std::nullopt;
+  return RegisterFinely(options, reference, query, *coarse);
 }
 
 Eigen::Matrix2d NormalScatter(const RegistrationOptions& options,
@@ -238,7 +284,7 @@ std::optional<Rigid2> RegisterPoints(const RegistrationOptions& options,
   const Eigen::Vector3d precision(per_meter * per_meter, per_meter * per_meter,
                                   per_radian * per_radian);
   return GaussNewton(
-      options, guess_T_reference_points,
+      options, {0, options.num_iterations}, guess_T_reference_points,
       [&](const Rigid2& pose, const double scale, const int divisor,
           NormalEquations* const equations) {
         AddForward(reference, points, Count(options, points, divisor), pose,

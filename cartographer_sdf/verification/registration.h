@@ -36,6 +36,15 @@ struct RegistrationOptions {
     const RegistrationOptions& options, const SurfaceModel& reference,
     const SurfaceModel& query, const Rigid2& guess_T_reference_query);
 
+// The same in two halves: few points and wide kernels bring the pose within
+// some 0.1 m, where most wrong poses can be told already; all points settle it.
+[[nodiscard]] std::optional<Rigid2> RegisterCoarsely(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const Rigid2& guess_T_reference_query);
+[[nodiscard]] std::optional<Rigid2> RegisterFinely(
+    const RegistrationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const Rigid2& coarse_T_reference_query);
+
 // The refined pose of points (a scan, in its node's frame) in the reference's
 // field. A prior with these standard deviations [m], [rad], against residuals
 // of `residual_sigma` [m], holds the guess where the walls leave it free.

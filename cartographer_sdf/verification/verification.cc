@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "glog/logging.h"
@@ -21,6 +22,9 @@ constexpr double kCloseRivalGap = 2.;
 // Possible pose errors along a corridor [m].
 constexpr double kSlides[] = {-3., -1.5, 1.5, 3.};
 
+// Coarsely registered poses nearer than this settle at the same pose.
+constexpr PoseTolerance kSameBasin{0.1, 0.02};
+
 struct Candidate {
   MeasuredPose pose;
   double score;  // without the margin
@@ -28,6 +32,16 @@ struct Candidate {
 
 const Rigid2& PoseOf(const Candidate& candidate) {
   return candidate.pose.T_reference_query;
+}
+
+// With the numbers of points of the screening.
+VerificationOptions OnFewPoints(VerificationOptions options) {
+  const int num_points = options.screening.num_points;
+  options.agreement.max_num_points =
+      std::min(options.agreement.max_num_points, num_points);
+  options.registration.max_num_points = std::min(
+      options.registration.max_num_points, std::max(10, num_points / 3));
+  return options;
 }
 
 // Verifies poses of one pair of submaps.
@@ -38,7 +52,8 @@ class PairVerifier {
       : options_(options),
         reference_(reference),
         query_(query),
-        centroid_(ObservedCentroid(query)) {
+        centroid_(ObservedCentroid(query)),
+        few_points_(OnFewPoints(options)) {
     CHECK_EQ(Validate(options), "");
   }
 
@@ -49,11 +64,28 @@ class PairVerifier {
       const std::vector<Rigid2>& guesses) const {
     std::vector<Candidate> candidates;
     for (const Rigid2& guess : guesses) {
-      std::optional<MeasuredPose> pose =
-          RegisterAndMeasure(options_, reference_, query_, guess);
-      if (!pose) continue;
-      const double score = ScoreWithoutMargin(pose->evidence);
-      candidates.push_back({*std::move(pose), score});
+      std::optional<Candidate> candidate = MakeCandidate(
+          RegisterAndMeasure(options_, reference_, query_, guess));
+      if (candidate) candidates.push_back(*std::move(candidate));
+    }
+    SortByScore(&candidates);
+    return candidates;
+  }
+
+  // Does the same, without the guesses whose screening shows that they are
+  // nowhere near the best of them or `score_to_beat`.
+  [[nodiscard]] std::vector<Candidate> RefinePromising(
+      const std::vector<Rigid2>& guesses, const double score_to_beat) const {
+    const ScreeningOptions& screening = options_.screening;
+    std::vector<Candidate> candidates;
+    double best_score = score_to_beat;
+    for (const Candidate& screened : Screen(guesses)) {
+      if (screened.score < best_score - screening.max_score_gap) break;
+      if (!candidates.empty() && screened.score < screening.min_score) break;
+      std::optional<Candidate> candidate = Settle(PoseOf(screened));
+      if (!candidate) continue;
+      best_score = std::max(best_score, candidate->score);
+      candidates.push_back(*std::move(candidate));
     }
     SortByScore(&candidates);
     return candidates;
@@ -61,8 +93,9 @@ class PairVerifier {
 
   [[nodiscard]] std::vector<Candidate> RefineBest(
       const std::vector<Rigid2>& hypotheses) const {
-    return Refine(RankHypotheses(options_.ranking, reference_, query_,
-                                 hypotheses, centroid_));
+    return RefinePromising(RankHypotheses(options_.ranking, reference_, query_,
+                                          hypotheses, centroid_),
+                           -std::numeric_limits<double>::infinity());
   }
 
   // Judges the candidate against the others, which may be the same pose. Also
@@ -74,8 +107,9 @@ class PairVerifier {
                                     const RivalSearch search) const {
     std::vector<Candidate> rivals = DistinctFrom(candidate, others);
     if (search == RivalSearch::kAlways || ScoreAmong(candidate, rivals) > 0.) {
-      for (Candidate& rival :
-           DistinctFrom(candidate, Refine(UnproposedPoses(candidate.pose)))) {
+      for (Candidate& rival : DistinctFrom(
+               candidate, RefinePromising(UnproposedPoses(candidate.pose),
+                                          candidate.score))) {
         rivals.push_back(std::move(rival));
       }
     }
@@ -93,6 +127,41 @@ class PairVerifier {
  private:
   [[nodiscard]] double ScoreWithoutMargin(const PairEvidence& evidence) const {
     return Score(options_.judgement.score_weights, evidence, 0.);
+  }
+
+  [[nodiscard]] std::optional<Candidate> MakeCandidate(
+      std::optional<MeasuredPose> pose) const {
+    if (!pose) return std::nullopt;
+    const double score = ScoreWithoutMargin(pose->evidence);
+    return Candidate{*std::move(pose), score};
+  }
+
+  // Registers coarsely and measures on few points; best first, and of poses
+  // that would settle at the same one only the best.
+  [[nodiscard]] std::vector<Candidate> Screen(
+      const std::vector<Rigid2>& guesses) const {
+    std::vector<Candidate> screened;
+    for (const Rigid2& guess : guesses) {
+      const std::optional<Rigid2> coarse =
+          RegisterCoarsely(options_.registration, reference_, query_, guess);
+      if (!coarse) continue;
+      screened.push_back(*MakeCandidate(MeasuredPose{
+          *coarse, MeasurePair(few_points_.agreement, few_points_.registration,
+                               reference_, query_, *coarse)}));
+    }
+    SortByScore(&screened);
+    return KeepDistinct(screened, PoseOf, centroid_, kSameBasin,
+                        screened.size());
+  }
+
+  // Completes the registration of a screened pose, and measures on all points.
+  [[nodiscard]] std::optional<Candidate> Settle(const Rigid2& coarse) const {
+    const std::optional<Rigid2> registered =
+        RegisterFinely(options_.registration, reference_, query_, coarse);
+    if (!registered) return std::nullopt;
+    return MakeCandidate(MeasuredPose{
+        *registered, MeasurePair(options_.agreement, options_.registration,
+                                 reference_, query_, *registered)});
   }
 
   [[nodiscard]] static double Margin(const Candidate& candidate,
@@ -171,14 +240,25 @@ class PairVerifier {
   const SurfaceModel& reference_;
   const SurfaceModel& query_;
   const Eigen::Vector2d centroid_;
+  const VerificationOptions few_points_;
 };
 
 }  // namespace
 
+std::string Validate(const ScreeningOptions& options) {
+  if (options.num_points < 10) return "num_points must be at least 10";
+  if (!std::isfinite(options.min_score)) return "min_score must be finite";
+  if (!(options.max_score_gap >= 0.)) {
+    return "max_score_gap must not be negative";
+  }
+  return "";
+}
+
 std::string Validate(const VerificationOptions& options) {
   for (const std::string& error :
-       {Validate(options.ranking), Validate(options.registration),
-        Validate(options.agreement), Validate(options.judgement)}) {
+       {Validate(options.ranking), Validate(options.screening),
+        Validate(options.registration), Validate(options.agreement),
+        Validate(options.judgement)}) {
     if (!error.empty()) return error;
   }
   return "";

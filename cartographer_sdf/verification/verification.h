@@ -24,8 +24,24 @@
 
 namespace cartographer_sdf {
 
+// Most poses of most pairs are wrong, and few points show it: after the coarse
+// half of registration, poses are measured on few points, and only those that
+// may be the best or its rivals are registered and measured fully.
+struct ScreeningOptions {
+  // Wall points of each submap that are measured.
+  int num_points = 300;
+  // Of several poses, only the best is completed if it and the others score
+  // lower than this; log-odds, without the margin.
+  double min_score = -12.;
+  // Poses that score lower than the best by more are dropped: they can be no
+  // rivals (kMaxMargin), by more than the error of a score on few points.
+  double max_score_gap = 8.;
+};
+[[nodiscard]] std::string Validate(const ScreeningOptions& options);
+
 struct VerificationOptions {
   RankingOptions ranking;
+  ScreeningOptions screening;
   RegistrationOptions registration;
   AgreementOptions agreement;
   JudgementOptions judgement;

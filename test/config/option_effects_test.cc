@@ -111,10 +111,19 @@ std::string Candidates(const RetrievalOptions& options,
   text.precision(17);
   for (const auto& [id, place] : places) {
     for (const RetrievalCandidate& candidate : index.Query(place.features)) {
-      text << candidate.id << " " << candidate.score << "\n";
+      text << candidate.id << " " << candidate.score << " "
+           << candidate.T_reference_query.size() << "\n";
     }
   }
   return text.str();
+}
+
+void KeepBadPoses(RecognitionOptions* const options) {
+  options->verify_neighbourhoods = false;
+  RankingOptions& ranking = options->match.verification.ranking;
+  ranking.min_coarse_score = -10.;
+  ranking.min_fine_score = -10.;
+  ranking.max_fine_score_gap = 10.;
 }
 
 TEST(OptionEffectsTest, OfPlaces) {
@@ -146,7 +155,8 @@ TEST(OptionEffectsTest, OfRecognition) {
   // An index that proposes nothing.
   const auto blind = with([](RecognitionOptions* options) {
     options->verify_neighbourhoods = false;
-    options->retrieval.votes.min_baseline_meters = 1e3;
+    options->retrieval.pairs.min_length_meters = 1e3;
+    options->retrieval.pairs.max_length_meters = 2e3;
   });
   const auto by_paper = with([](RecognitionOptions* options) {
     options->match.method = Method::kPaper;
@@ -157,6 +167,12 @@ TEST(OptionEffectsTest, OfRecognition) {
          return drive.Recognize(options, places);
        }},
       {"match.", alone},
+      {"match.verification.screening.", with(&KeepBadPoses)},
+      {"match.verification.screening.max_score_gap",
+       with([](RecognitionOptions* options) {
+         KeepBadPoses(options);
+         options->match.verification.screening.min_score = -1e6;
+       })},
       {"use_retrieval", blind},
       {"match.correspondence.max_ratio", with([](RecognitionOptions* options) {
          options->match.correspondence.use_ratio_test = true;

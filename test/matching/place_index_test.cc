@@ -10,6 +10,7 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/building.h"
 #include "test/testing/feature_sets.h"
 
 namespace cartographer_sdf::place_index_test {
@@ -54,7 +55,11 @@ std::string Text(const std::vector<RetrievalCandidate>& candidates) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const RetrievalCandidate& candidate : candidates) {
-    text << candidate.id << " " << candidate.score << "\n";
+    text << candidate.id << " " << candidate.score;
+    for (const Rigid2& pose : candidate.T_reference_query) {
+      text << " " << pose.translation().transpose() << " " << pose.rotation();
+    }
+    text << "\n";
   }
   return text.str();
 }
@@ -70,6 +75,9 @@ TEST(PlaceIndexTest, FindsThePlaceHoweverItIsTurned) {
     EXPECT_EQ(candidates[0].id, id);
     // Nothing in common with the others but chance.
     EXPECT_GT(candidates[0].score, 3. * candidates[1].score);
+    ASSERT_FALSE(candidates[0].T_reference_query.empty());
+    EXPECT_THAT(candidates[0].T_reference_query[0],
+                testing::IsPoseNear(T_query_reference.Inverse(), 0.1, 0.02));
   }
 }
 
@@ -127,6 +135,8 @@ TEST(PlaceIndexTest, ScoresDecideHowManyComeOut) {
   const auto places = Places(20);
   const FeatureSet query = SeenAgain({}, places.at({0, 4}));
   RetrievalOptions options;
+  // Coarse, so that every submap has something in common with the query.
+  options.pairs.clearance_bin_meters = 3.;
   options.min_score = 1e6;
   options.min_num_candidates = 3;
   EXPECT_THAT(IndexOf(options, places).Query(query), SizeIs(3));
@@ -139,23 +149,29 @@ TEST(PlaceIndexTest, ScoresDecideHowManyComeOut) {
   for (size_t k = 1; k < all.size(); ++k) {
     EXPECT_GE(all[k - 1].score, all[k].score);
   }
-  options.min_score = 0.5 * (all[8].score + all[9].score);
-  EXPECT_THAT(IndexOf(options, places).Query(query), SizeIs(9));
+  // Below a score that no other candidate has.
+  size_t count = 3;
+  while (count < all.size() && all[count].score == all[count - 1].score) {
+    ++count;
+  }
+  ASSERT_LT(count, all.size());
+  options.min_score = 0.5 * (all[count - 1].score + all[count].score);
+  EXPECT_THAT(IndexOf(options, places).Query(query), SizeIs(count));
 }
 
-TEST(PlaceIndexTest, FeaturesThatDifferInKindOrClearanceAreNoNeighbours) {
+TEST(PlaceIndexTest, FeaturesThatDifferInKindOrClearanceAreNotTheSame) {
   std::mt19937 engine(42);
   FeatureSet place = testing::RandomFeatures(40, 20., kLength, &engine);
   for (Feature& feature : place.features) {
     feature.keypoint.kind = KeypointKind::kSaddle;
-    feature.keypoint.clearance = 1.;
+    feature.keypoint.clearance = 1.1;
   }
   const PlaceIndex index = IndexOf({}, {{{0, 0}, place}});
   EXPECT_THAT(index.Query(place), SizeIs(1));
   FeatureSet other = place;
-  for (Feature& feature : other.features) feature.keypoint.clearance = 1.19;
-  EXPECT_THAT(index.Query(other), SizeIs(1));
   for (Feature& feature : other.features) feature.keypoint.clearance = 1.21;
+  EXPECT_THAT(index.Query(other), SizeIs(1));
+  for (Feature& feature : other.features) feature.keypoint.clearance = 1.31;
   EXPECT_THAT(index.Query(other), SizeIs(0));
   for (Feature& feature : place.features) {
     feature.keypoint.kind = KeypointKind::kMaximum;
@@ -163,23 +179,46 @@ TEST(PlaceIndexTest, FeaturesThatDifferInKindOrClearanceAreNoNeighbours) {
   EXPECT_THAT(index.Query(place), SizeIs(0));
 }
 
-// Enough features for several blocks and segments.
-TEST(PlaceIndexTest, TheNearestAreFoundAmongMany) {
-  std::mt19937 engine(42);
-  std::map<SubmapId, FeatureSet> places;
-  for (int k = 0; k < 9; ++k) {
-    places[{0, k}] = testing::RandomFeatures(700, 20., kLength, &engine);
+// Far more removals than the index holds submaps.
+TEST(PlaceIndexTest, ForgetsWhatIsRemoved) {
+  const auto places = Places(8);
+  const FeatureSet query = SeenAgain({1., 2., 3.}, places.at({0, 4}));
+  PlaceIndex index = IndexOf({}, places);
+  const std::string expected = Text(index.Query(query));
+  const size_t memory = index.MemoryUse();
+  for (int round = 0; round < 50; ++round) {
+    for (const auto& [id, features] : places) {
+      EXPECT_TRUE(index.Remove(id));
+      index.Add(id, features);
+    }
   }
-  const FeatureSet query = places.at({0, 3});
+  EXPECT_EQ(index.size(), places.size());
+  EXPECT_EQ(Text(index.Query(query)), expected);
+  EXPECT_LT(index.MemoryUse(), 4 * memory);
+}
+
+TEST(PlaceIndexTest, VisitsRareKeysFirstAndNoMorePairsThanAllowed) {
+  const auto places = Places(200);
+  const FeatureSet query = SeenAgain({}, places.at({0, 4}));
   RetrievalOptions options;
-  options.min_num_candidates = 9;
-  // The nearest of each query feature is itself, and the next hardly counts.
-  options.num_neighbours = 2;
-  const auto candidates = IndexOf(options, places).Query(query);
-  ASSERT_FALSE(candidates.empty());
-  EXPECT_EQ(candidates[0].id, (SubmapId{0, 3}));
-  // Exact matches of 700 features with weight 1: all pairs, and no others.
-  EXPECT_GT(candidates[0].score, 10. * candidates[1].score);
+  options.max_num_candidates = 1000;
+  options.min_score = 0.;
+  const auto all = IndexOf(options, places).Query(query);
+  options.max_num_visited_pairs = 2000;
+  const auto some = IndexOf(options, places).Query(query);
+  EXPECT_LT(some.size(), all.size());
+  ASSERT_FALSE(some.empty());
+  EXPECT_EQ(some[0].id, (SubmapId{0, 4}));
+}
+
+TEST(PlaceIndexTest, TakesEightKilobytesPerSubmap) {
+  std::mt19937 engine(42);
+  PlaceIndex index{RetrievalOptions()};
+  for (int k = 0; k < 1000; ++k) {
+    index.Add({0, k}, testing::RandomFeatures(300, 30., kLength, &engine));
+  }
+  EXPECT_LE(index.MemoryUse(), 8000u * 1000u);
+  EXPECT_GE(index.MemoryUse(), 1000u * 1000u);
 }
 
 TEST(PlaceIndexTest, NothingFromNothing) {
@@ -205,10 +244,10 @@ TEST(RetrievalOptionsTest, ValidateNamesTheOption) {
     options.*member = value;
     return Validate(options);
   };
-  EXPECT_THAT(error(&RetrievalOptions::num_neighbours, 1),
-              HasSubstr("num_neighbours"));
-  EXPECT_THAT(error(&RetrievalOptions::max_clearance_difference_meters, 0.),
-              HasSubstr("max_clearance_difference_meters"));
+  EXPECT_THAT(error(&RetrievalOptions::num_stored_partners, 0),
+              HasSubstr("num_stored_partners"));
+  EXPECT_THAT(error(&RetrievalOptions::max_num_visited_pairs, -1),
+              HasSubstr("max_num_visited_pairs"));
   EXPECT_THAT(error(&RetrievalOptions::min_score, std::nan("")),
               HasSubstr("min_score"));
   EXPECT_THAT(error(&RetrievalOptions::min_num_candidates, 0),
@@ -216,8 +255,11 @@ TEST(RetrievalOptionsTest, ValidateNamesTheOption) {
   EXPECT_THAT(error(&RetrievalOptions::max_num_candidates, 9),
               HasSubstr("max_num_candidates"));
   RetrievalOptions options;
-  options.votes.bin_rotation = 0.;
-  EXPECT_THAT(Validate(options), HasSubstr("bin_rotation"));
+  options.pose_bins.rotation = 0.;
+  EXPECT_THAT(Validate(options), HasSubstr("rotation"));
+  options = {};
+  options.pairs.border_fraction = 0.6;
+  EXPECT_THAT(Validate(options), HasSubstr("border_fraction"));
 }
 
 }  // namespace

@@ -390,10 +390,11 @@ TEST(HypothesisOptionsTest, ValidateNamesTheOption) {
               HasSubstr("max_length_difference_meters"));
   EXPECT_THAT(error(&PoseVotingOptions::min_baseline_meters, 0.),
               HasSubstr("min_baseline_meters"));
-  EXPECT_THAT(error(&PoseVotingOptions::bin_distance_meters, 0.),
-              HasSubstr("bin_distance_meters"));
-  EXPECT_THAT(error(&PoseVotingOptions::bin_rotation, std::nan("")),
-              HasSubstr("bin_rotation"));
+  HypothesisOptions coarse;
+  coarse.votes.bins.distance_meters = 0.;
+  EXPECT_THAT(Validate(coarse), HasSubstr("distance_meters"));
+  coarse.votes.bins = {0.5, std::nan("")};
+  EXPECT_THAT(Validate(coarse), HasSubstr("rotation"));
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(RecognitionOptionsTest, AreValidated) {
   options.min_index_gap = 0;
   EXPECT_THAT(Validate(options), ::testing::HasSubstr("min_index_gap"));
   options = {};
-  options.retrieval.num_neighbours = 1;
+  options.retrieval.num_stored_partners = 0;
   EXPECT_NE(Validate(options), "");
 }
 
