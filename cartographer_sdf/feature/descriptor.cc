@@ -4,7 +4,10 @@
 #include "cartographer_sdf/feature/descriptor.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -16,69 +19,96 @@ using Eigen::Index;
 
 constexpr double kMillimetresPerMetre = 1000.;
 
-struct PolarGradient {
-  float orientation;  // grid frame, [0, 2 pi]
-  float magnitude;
-};
-
+// Gradients within the window of a keypoint, in the grid frame.
 struct Window {
-  std::vector<PolarGradient> gradients;  // weighted
-  double mean_distance = 0.;             // [m]
+  std::vector<float> orientations;  // [0, 2 pi]
+  std::vector<float> weights;       // magnitude times Gaussian
+  double mean_distance = 0.;        // [m]
 };
 
-// Gradients by central differences. As windows overlap, each gradient is
-// computed once, on first use.
-class GradientCache {
- public:
-  explicit GradientCache(const ArrayXXf& values)
-      : values_(values),
-        gradients_(values.size(), PolarGradient{0.f, kMissing}) {}
-
-  // The cell must not lie on the rim.
-  const PolarGradient& At(const Index i, const Index j) {
-    PolarGradient& gradient = gradients_[j * values_.rows() + i];
-    if (gradient.magnitude == kMissing) {
-      const float x = 0.5f * (values_(i + 1, j) - values_(i - 1, j));
-      const float y = 0.5f * (values_(i, j + 1) - values_(i, j - 1));
-      const float angle = std::atan2(y, x);
-      gradient.orientation =
-          angle < 0.f ? angle + static_cast<float>(2. * M_PI) : angle;
-      gradient.magnitude = std::sqrt(x * x + y * y);
-    }
-    return gradient;
-  }
-
- private:
-  static constexpr float kMissing = -1.f;
-
-  const ArrayXXf& values_;
-  std::vector<PolarGradient> gradients_;
-};
+// atan2 in [0, 2 pi], 0 at the origin, to 3e-7: vector code is made of it.
+// [Abramowitz1964], 4.4.49, for the arc tangent.
+inline float Angle(const float y, const float x) {
+  constexpr float kPi = static_cast<float>(M_PI);
+  const float abs_x = std::abs(x), abs_y = std::abs(y);
+  const float larger = abs_x < abs_y ? abs_y : abs_x;
+  const float smaller = abs_x < abs_y ? abs_x : abs_y;
+  const float t = smaller / (larger + std::numeric_limits<float>::min());
+  const float s = t * t;
+  float sum = 0.0028662257f;
+  sum = sum * s - 0.0161657367f;
+  sum = sum * s + 0.0429096138f;
+  sum = sum * s - 0.0752896400f;
+  sum = sum * s + 0.1065626393f;
+  sum = sum * s - 0.1420889944f;
+  sum = sum * s + 0.1999355085f;
+  sum = sum * s - 0.3333314528f;
+  float angle = t + t * s * sum;
+  angle = abs_x < abs_y ? 0.5f * kPi - angle : angle;
+  angle = x < 0.f ? kPi - angle : angle;
+  return y < 0.f ? 2.f * kPi - angle : angle;
+}
 
 // Bin k of n is centred on k * 2 pi / n.
 class CircularHistogram {
  public:
   explicit CircularHistogram(const int num_bins)
       : num_bins_(num_bins),
-        bins_per_radian_(num_bins / (2. * M_PI)),
-        bins_(num_bins, 0.) {}
+        bins_per_radian_(static_cast<float>(num_bins / (2. * M_PI))),
+        parts_(num_bins + 1) {}
 
-  // Splits the weight linearly between the two bins nearest to the angle, which
-  // lies in (-2 pi, 4 pi).
-  void Add(const double angle, const double weight) {
-    const double bin = angle * bins_per_radian_ + num_bins_;  // positive
-    int low = static_cast<int>(bin);
-    const double fraction = bin - low;
-    while (low >= num_bins_) low -= num_bins_;
-    bins_[low] += (1. - fraction) * weight;
-    bins_[low + 1 < num_bins_ ? low + 1 : 0] += fraction * weight;
+  // Splits each weight linearly between the two bins nearest to its angle,
+  // which is relative to `origin`, both in [0, 2 pi].
+  void Add(const std::vector<float>& angles, const std::vector<float>& weights,
+           const float origin) {
+    constexpr float kTurn = static_cast<float>(2. * M_PI);
+    constexpr size_t kChunk = 256;
+    std::array<int, kChunk> low;
+    std::array<float, kChunk> fraction;
+    for (size_t begin = 0; begin < angles.size(); begin += kChunk) {
+      const size_t size = std::min(kChunk, angles.size() - begin);
+      const float* const angle = &angles[begin];
+      for (size_t k = 0; k < size; ++k) {
+        const float difference = angle[k] - origin;
+        const float bin = bins_per_radian_ *
+                          (difference < 0.f ? difference + kTurn : difference);
+        low[k] = static_cast<int>(bin);
+        fraction[k] = bin - static_cast<float>(low[k]);
+      }
+      for (size_t k = 0; k < size; ++k) {
+        const double weight = weights[begin + k];
+        const double high_weight = fraction[k] * weight;
+        Part& part = parts_[low[k]][k % kNumSums];
+        part.low += weight - high_weight;
+        part.high += high_weight;
+      }
+    }
   }
-  const std::vector<double>& bins() const { return bins_; }
+
+  [[nodiscard]] std::vector<double> Bins() const {
+    std::vector<double> bins(num_bins_, 0.);
+    for (int k = 0; k <= num_bins_; ++k) {
+      for (const Part& part : parts_[k]) {
+        bins[k % num_bins_] += part.low;
+        bins[(k + 1) % num_bins_] += part.high;
+      }
+    }
+    return bins;
+  }
 
  private:
+  // What goes to a bin and to the next one.
+  struct Part {
+    double low = 0., high = 0.;
+  };
+  // Neighbouring cells have similar angles: with several sums a bin, none waits
+  // for another's.
+  static constexpr size_t kNumSums = 4;
+
   const int num_bins_;
-  const double bins_per_radian_;
-  std::vector<double> bins_;
+  const float bins_per_radian_;
+  // Rounding may yield a bin after the last, which is the first.
+  std::vector<std::array<Part, kNumSums>> parts_;
 };
 
 // The inner cells of one axis that lie within the radius of a centre, with
@@ -100,38 +130,66 @@ struct WindowAxis {
       weights.push_back(std::exp(-0.5 * d * d / (sigma * sigma)));
     }
   }
+
+  // The part of the axis whose squared distances are at most `limit`.
+  [[nodiscard]] std::pair<size_t, size_t> Within(const double limit) const {
+    size_t begin = 0, end = squared_distances.size();
+    while (begin < end && squared_distances[begin] > limit) ++begin;
+    while (begin < end && squared_distances[end - 1] > limit) --end;
+    return {begin, end};
+  }
 };
+
+// Appends gradients by central differences, at `size` cells of a column from
+// the given one on, times the weights of their rows and of the column.
+void AppendGradients(const ArrayXXf& values, const Index i, const Index j,
+                     const size_t size, const double* const row_weights,
+                     const double column_weight, Window* const window) {
+  const size_t old_size = window->weights.size();
+  window->orientations.resize(old_size + size);
+  window->weights.resize(old_size + size);
+  float* __restrict const orientations = &window->orientations[old_size];
+  float* __restrict const weights = &window->weights[old_size];
+  const float* const left = &values(i, j - 1);
+  const float* const centre = &values(i, j);
+  const float* const right = &values(i, j + 1);
+  for (size_t k = 0; k < size; ++k) {
+    const float x = 0.5f * (centre[k + 1] - centre[k - 1]);
+    const float y = 0.5f * (right[k] - left[k]);
+    orientations[k] = Angle(y, x);
+    weights[k] = static_cast<float>(row_weights[k] * column_weight) *
+                 std::sqrt(x * x + y * y);
+  }
+}
 
 // Gradients and the mean distance within the radius of a point given in
 // (continuous) cells; cells beyond the rim are skipped.
-Window ExtractWindow(const DescriptorOptions& options,
-                     const DistanceField& field, const Eigen::Vector2d& centre,
-                     GradientCache* const gradients) {
+void ExtractWindow(const DescriptorOptions& options, const DistanceField& field,
+                   const ArrayXXf& smoothed, const Eigen::Vector2d& centre,
+                   Window* const window) {
   const double radius = options.radius_meters / field.geometry.resolution;
   const double sigma = options.gaussian_sigma_ratio * radius;
   const WindowAxis x(centre.x(), radius, sigma, field.distance.rows());
   const WindowAxis y(centre.y(), radius, sigma, field.distance.cols());
-  Window window;
-  window.gradients.reserve(x.weights.size() * y.weights.size());
+  window->orientations.clear();
+  window->weights.clear();
   double sum = 0., sum_distance = 0.;
   for (size_t b = 0; b < y.weights.size(); ++b) {
-    for (size_t a = 0; a < x.weights.size(); ++a) {
-      if (x.squared_distances[a] + y.squared_distances[b] > radius * radius) {
-        continue;
-      }
-      const Index i = x.first + static_cast<Index>(a);
-      const Index j = y.first + static_cast<Index>(b);
+    const auto [begin, end] =
+        x.Within(radius * radius - y.squared_distances[b]);
+    if (begin == end) continue;
+    const Index i = x.first + static_cast<Index>(begin);
+    const Index j = y.first + static_cast<Index>(b);
+    AppendGradients(smoothed, i, j, end - begin, &x.weights[begin],
+                    y.weights[b], window);
+    const float* const distance = &field.distance(i, j);
+    for (size_t a = begin; a < end; ++a) {
       const double gaussian = x.weights[a] * y.weights[b];
-      const PolarGradient& gradient = gradients->At(i, j);
-      window.gradients.push_back(
-          {gradient.orientation,
-           static_cast<float>(gaussian) * gradient.magnitude});
       sum += gaussian;
-      sum_distance += gaussian * field.distance(i, j);
+      sum_distance += gaussian * distance[a - begin];
     }
   }
-  if (sum > 0.) window.mean_distance = sum_distance / sum;
-  return window;
+  window->mean_distance = sum > 0. ? sum_distance / sum : 0.;
 }
 
 // Peaks of the circular histogram, at sub-bin positions [rad], highest first.
@@ -139,10 +197,8 @@ std::vector<double> DominantOrientations(const DescriptorOptions& options,
                                          const Window& window) {
   const int n = options.num_orientation_bins;
   CircularHistogram sharp(n);
-  for (const PolarGradient& gradient : window.gradients) {
-    sharp.Add(gradient.orientation, gradient.magnitude);
-  }
-  const std::vector<double>& raw = sharp.bins();
+  sharp.Add(window.orientations, window.weights, 0.f);
+  const std::vector<double> raw = sharp.Bins();
   std::vector<double> histogram(n);
   for (int k = 0; k < n; ++k) {
     histogram[k] =
@@ -172,13 +228,12 @@ std::vector<double> DominantOrientations(const DescriptorOptions& options,
 Eigen::VectorXf Describe(const DescriptorOptions& options, const Window& window,
                          const double orientation) {
   CircularHistogram histogram(options.num_bins);
-  for (const PolarGradient& gradient : window.gradients) {
-    histogram.Add(gradient.orientation - orientation, gradient.magnitude);
-  }
+  histogram.Add(window.orientations, window.weights,
+                static_cast<float>(orientation));
+  const std::vector<double> bins = histogram.Bins();
   Eigen::VectorXd descriptor(options.num_bins + 1);
   descriptor.head(options.num_bins) =
-      Eigen::Map<const Eigen::VectorXd>(histogram.bins().data(),
-                                        options.num_bins)
+      Eigen::Map<const Eigen::VectorXd>(bins.data(), options.num_bins)
           .normalized();
   descriptor[options.num_bins] =
       options.distance_weight * kMillimetresPerMetre * window.mean_distance;
@@ -211,20 +266,26 @@ std::string Validate(const DescriptorOptions& options) {
   return "";
 }
 
+int SmoothedReach(const DescriptorOptions& options, const double resolution) {
+  // Up to half a cell of the keypoint's own, and the neighbour that a gradient
+  // reads.
+  return static_cast<int>(std::ceil(options.radius_meters / resolution + 0.5)) +
+         1;
+}
+
 FeatureSet DescribeKeypoints(const DescriptorOptions& options,
                              const DistanceField& field,
                              const ArrayXXf& smoothed,
                              const std::vector<Keypoint>& keypoints) {
   CHECK_EQ(Validate(options), "");
   const Rigid2 T_grid_submap = field.geometry.T_submap_grid.Inverse();
-  GradientCache gradients(smoothed);
   FeatureSet set;
   std::vector<Eigen::VectorXf> descriptors;
+  Window window;
   for (const Keypoint& keypoint : keypoints) {
-    const Window window = ExtractWindow(
-        options, field,
-        field.geometry.GridToCells(T_grid_submap * keypoint.position),
-        &gradients);
+    ExtractWindow(options, field, smoothed,
+                  field.geometry.GridToCells(T_grid_submap * keypoint.position),
+                  &window);
     for (const double orientation : DominantOrientations(options, window)) {
       set.features.push_back(
           {keypoint, NormalizeAngle(orientation - T_grid_submap.rotation())});

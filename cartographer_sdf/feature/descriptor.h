@@ -38,6 +38,10 @@ struct DescriptorOptions {
 };
 [[nodiscard]] std::string Validate(const DescriptorOptions& options);
 
+// How far from a keypoint's cell the smoothed field is read [cells].
+[[nodiscard]] int SmoothedReach(const DescriptorOptions& options,
+                                double resolution);
+
 // A keypoint with one orientation.
 struct Feature {
   Keypoint keypoint;
@@ -51,7 +55,8 @@ struct FeatureSet {
 };
 
 // Returns features in the order of the keypoints; a window without any gradient
-// yields none. `smoothed` is SmoothField's result.
+// yields none. `smoothed` is SmoothField's result, or SmoothFieldNearObserved's
+// with a reach of at least SmoothedReach.
 [[nodiscard]] FeatureSet DescribeKeypoints(
     const DescriptorOptions& options, const DistanceField& field,
     const Eigen::ArrayXXf& smoothed, const std::vector<Keypoint>& keypoints);

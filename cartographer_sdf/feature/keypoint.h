@@ -53,8 +53,15 @@ struct Keypoint {
 [[nodiscard]] Eigen::ArrayXXf SmoothField(const DistanceField& field,
                                           double sigma_cells);
 
+// The same only at cells that are at most `reach` rows and columns away from an
+// observed one, undefined elsewhere: for a fraction of the time, as most cells
+// of a large submap are far from any.
+[[nodiscard]] Eigen::ArrayXXf SmoothFieldNearObserved(
+    const DistanceField& field, double sigma_cells, int reach);
+
 // Returns keypoints in memory order (j, then i). `smoothed` is SmoothField's
-// result.
+// result, or SmoothFieldNearObserved's with a reach of at least
+// non_maximum_suppression_cells + 1.
 [[nodiscard]] std::vector<Keypoint> DetectKeypoints(
     const KeypointOptions& options, const DistanceField& field,
     const Eigen::ArrayXXf& smoothed);

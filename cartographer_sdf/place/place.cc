@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/place/place.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "glog/logging.h"
@@ -18,6 +19,14 @@ std::string Validate(const PlaceOptions& options) {
   return "";
 }
 
+Eigen::ArrayXXf SmoothFieldForPlace(const PlaceOptions& options,
+                                    const DistanceField& field) {
+  return SmoothFieldNearObserved(
+      field, options.keypoint.smoothing_sigma_cells,
+      std::max(options.keypoint.non_maximum_suppression_cells + 1,
+               SmoothedReach(options.descriptor, field.geometry.resolution)));
+}
+
 std::optional<Place> DescribePlace(const PlaceOptions& options,
                                    const SubmapId& id,
                                    const OccupancyGrid& grid) {
@@ -28,8 +37,7 @@ std::optional<Place> DescribePlace(const PlaceOptions& options,
   std::optional<SurfaceModel> surface =
       MakeSurfaceModel(options.field, grid, *field);
   if (!surface) return std::nullopt;
-  const Eigen::ArrayXXf smoothed =
-      SmoothField(*field, options.keypoint.smoothing_sigma_cells);
+  const Eigen::ArrayXXf smoothed = SmoothFieldForPlace(options, *field);
   FeatureSet features =
       DescribeKeypoints(options.descriptor, *field, smoothed,
                         DetectKeypoints(options.keypoint, *field, smoothed));

@@ -29,6 +29,11 @@ struct Place {
   FeatureSet features;
 };
 
+// Returns the smoothed field as far as detecting and describing keypoints reads
+// it.
+[[nodiscard]] Eigen::ArrayXXf SmoothFieldForPlace(const PlaceOptions& options,
+                                                  const DistanceField& field);
+
 // Returns nullopt if the grid has no wall or no observed cell.
 [[nodiscard]] std::optional<Place> DescribePlace(const PlaceOptions& options,
                                                  const SubmapId& id,

@@ -21,10 +21,18 @@ constexpr float kCertaintyRange = 0.25f;
 // About one observed point for each square of this side [m].
 constexpr double kObservedPointSpacing = 0.25;
 
-int16_t ToMillimetres(const float meters) {
+// To the nearest integer, halves away from zero; as std::lround, but of whole
+// columns at once. The number must fit an integer.
+inline int Round(const float number) {
+  const int towards_zero = static_cast<int>(number);
+  const float rest = number - static_cast<float>(towards_zero);
+  return towards_zero + (rest >= 0.5f ? 1 : 0) - (rest <= -0.5f ? 1 : 0);
+}
+
+inline int16_t ToMillimetres(const float meters) {
   constexpr float kLimit = 32767.f;
   return static_cast<int16_t>(
-      std::lround(std::clamp(1000.f * meters, -kLimit, kLimit)));
+      Round(std::clamp(1000.f * meters, -kLimit, kLimit)));
 }
 
 // Fisher-Yates with a fixed seed and our own draws, as std::shuffle differs
@@ -38,26 +46,32 @@ void Mix(std::vector<T>* const items) {
   }
 }
 
+// The certainty that a known cell of that probability is free.
+inline uint8_t FreeCertainty(const float probability, const float threshold) {
+  const float certainty =
+      std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
+  return static_cast<uint8_t>(
+      probability > threshold ? 0 : Round(255.f * certainty));
+}
+
 // Adds the walls as weighted points, and the certainty of the free cells.
 void AddCertainty(const FieldOptions& options, const OccupancyGrid& grid,
                   SurfaceModel* const model) {
-  const Eigen::Array2i margin = (model->geometry.size - grid.geometry.size) / 2;
+  const CellGeometry& geometry = grid.geometry;
+  const Eigen::Array2i margin = (model->geometry.size - geometry.size) / 2;
   const float threshold = static_cast<float>(options.occupied_probability);
-  for (int j = 0; j < grid.geometry.size.y(); ++j) {
-    for (int i = 0; i < grid.geometry.size.x(); ++i) {
-      if (!grid.known(i, j)) continue;
-      const float probability = grid.probability(i, j);
-      if (probability > threshold) {
-        const float weight =
-            std::min((probability - kWallOffset) / kCertaintyRange, 1.f);
-        if (weight > 0.f) {
-          model->walls.push_back({grid.geometry.CellCentre({i, j}), weight});
-        }
-      } else {
-        const float certainty =
-            std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
-        model->cells(i + margin.x(), j + margin.y()).free =
-            static_cast<uint8_t>(std::lround(255.f * certainty));
+  for (int j = 0; j < geometry.size.y(); ++j) {
+    const bool* const known = &grid.known(0, j);
+    const float* const probability = &grid.probability(0, j);
+    SurfaceCell* const cells = &model->cells(margin.x(), j + margin.y());
+    for (int i = 0; i < geometry.size.x(); ++i) {
+      if (!known[i]) continue;
+      cells[i].free = FreeCertainty(probability[i], threshold);
+      if (!(probability[i] > threshold)) continue;
+      const float weight =
+          std::min((probability[i] - kWallOffset) / kCertaintyRange, 1.f);
+      if (weight > 0.f) {
+        model->walls.push_back({geometry.CellCentre({i, j}), weight});
       }
     }
   }
@@ -79,9 +93,11 @@ std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
   model.geometry = field.geometry;
   const CellGeometry& geometry = model.geometry;
   model.cells.resize(geometry.size.x(), geometry.size.y());
+  const float* const distance = field.distance.data();
+  const bool* const observed = field.observed.data();
+  SurfaceCell* const cells = model.cells.data();
   for (Eigen::Index k = 0; k < model.cells.size(); ++k) {
-    model.cells.data()[k] = {ToMillimetres(field.distance.data()[k]), 0,
-                             field.observed.data()[k]};
+    cells[k] = {ToMillimetres(distance[k]), 0, observed[k]};
   }
   AddCertainty(options, grid, &model);
   const int stride =

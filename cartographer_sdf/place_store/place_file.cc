@@ -21,7 +21,7 @@ namespace {
 constexpr char kKind[] = "cartographer_sdf places";
 // Increment it with every change of the format *or of the description of
 // submaps*.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
                          const proto::place_index::Header& header) {

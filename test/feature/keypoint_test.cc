@@ -141,6 +141,28 @@ TEST(SmoothFieldTest, EqualsBruteForce) {
   }
 }
 
+TEST(SmoothFieldTest, IsTheSameNearObservedCells) {
+  DistanceField field = FieldOf(RandomArray(150, 90));
+  field.observed.setConstant(false);
+  field.observed(0, 20) = field.observed(70, 50) = field.observed(149, 89) =
+      true;
+  const Eigen::ArrayXXf smoothed = SmoothField(field, 2.);
+  for (const int reach : {0, 3, 25}) {
+    const Eigen::ArrayXXf near = SmoothFieldNearObserved(field, 2., reach);
+    for (const Eigen::Array2i& cell :
+         {Eigen::Array2i(0, 20), Eigen::Array2i(70, 50),
+          Eigen::Array2i(149, 89)}) {
+      for (int j = std::max(cell.y() - reach, 0);
+           j <= std::min(cell.y() + reach, 89); ++j) {
+        for (int i = std::max(cell.x() - reach, 0);
+             i <= std::min(cell.x() + reach, 149); ++i) {
+          ASSERT_EQ(near(i, j), smoothed(i, j)) << i << ", " << j;
+        }
+      }
+    }
+  }
+}
+
 TEST(SmoothFieldTest, PreservesLinearFunctionsAwayFromTheRim) {
   Eigen::ArrayXXf linear(40, 50);
   for (int j = 0; j < 50; ++j) {

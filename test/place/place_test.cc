@@ -41,6 +41,23 @@ TEST(DescribePlaceTest, DescribesARoom) {
   }
 }
 
+// The field is smoothed near observed cells alone.
+TEST(DescribePlaceTest, HasTheFeaturesOfTheWholeField) {
+  PlaceOptions options;
+  options.descriptor.radius_meters = 1.5;
+  const OccupancyGrid grid = testing::SeeFrom(
+      testing::TwoRooms(), Rigid2(3., 2., 0.4), testing::WestRoomViewpoints());
+  const std::optional<Place> place = DescribePlace(options, {1, 2}, grid);
+  ASSERT_TRUE(place.has_value());
+  const DistanceField field = *MakeDistanceField(options.field, grid);
+  const Eigen::ArrayXXf smoothed =
+      SmoothField(field, options.keypoint.smoothing_sigma_cells);
+  const FeatureSet expected =
+      DescribeKeypoints(options.descriptor, field, smoothed,
+                        DetectKeypoints(options.keypoint, field, smoothed));
+  EXPECT_TRUE(place->features.descriptors == expected.descriptors);
+}
+
 TEST(DescribePlaceTest, NoneForDegenerateGrids) {
   EXPECT_FALSE(Describe(OccupancyGrid()).has_value());
   EXPECT_FALSE(Describe(Empty(1, 1)).has_value());
