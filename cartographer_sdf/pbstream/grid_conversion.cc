@@ -49,6 +49,20 @@ int FlatIndex(const Eigen::Array2i& size, const int i, const int j) {
   return host_x + size.y() * host_y;
 }
 
+// Calls visit(i, j, flat index) for each cell. Our columns are the host's rows:
+// in bands of as many of our rows as a cache line holds, neither is read in
+// strides.
+template <typename Visitor>
+void VisitCells(const Eigen::Array2i& size, const Visitor& visit) {
+  constexpr int kBand = 16;
+  for (int begin = 0; begin < size.x(); begin += kBand) {
+    const int end = std::min(begin + kBand, size.x());
+    for (int j = 0; j < size.y(); ++j) {
+      for (int i = begin; i < end; ++i) visit(i, j, FlatIndex(size, i, j));
+    }
+  }
+}
+
 absl::Status CheckLimits(const proto::MapLimits& limits, const int num_values) {
   if (!(limits.resolution() >= kMinResolution &&
         limits.resolution() <= kMaxResolution)) {
@@ -70,6 +84,11 @@ absl::Status CheckLimits(const proto::MapLimits& limits, const int num_values) {
 }
 
 absl::Status CheckValues(const google::protobuf::RepeatedField<int>& values) {
+  // kMaxValue has all the bits that a value may have.
+  static_assert((kMaxValue & (kMaxValue + 1)) == 0 && kUnknownValue == 0);
+  int bits = 0;
+  for (const int value : values) bits |= value;
+  if ((bits & ~kMaxValue) == 0) return absl::OkStatus();
   for (const int value : values) {
     if (value < kUnknownValue || value > kMaxValue) {
       return absl::DataLossError(
@@ -106,15 +125,13 @@ absl::Status FillProbabilities(const proto::Grid2D& stored,
         absl::StrCat("has a grid with correspondence costs from ", min_cost,
                      " to ", max_cost));
   }
-  const Eigen::Array2i& size = grid->geometry.size;
-  for (int j = 0; j < size.y(); ++j) {
-    for (int i = 0; i < size.x(); ++i) {
-      const int value = stored.cells(FlatIndex(size, i, j));
-      if (value == kUnknownValue) continue;
-      grid->known(i, j) = true;
-      grid->probability(i, j) = 1.f - ValueToFloat(value, min_cost, max_cost);
-    }
-  }
+  const int* const values = stored.cells().data();
+  VisitCells(grid->geometry.size, [&](const int i, const int j, const int k) {
+    const int value = values[k];
+    if (value == kUnknownValue) return;
+    grid->known(i, j) = true;
+    grid->probability(i, j) = 1.f - ValueToFloat(value, min_cost, max_cost);
+  });
   return absl::OkStatus();
 }
 
@@ -143,25 +160,21 @@ absl::Status FillImpliedProbabilities(const proto::Grid2D& stored,
   const float resolution = static_cast<float>(grid->geometry.resolution);
   const float free_distance =
       std::min(kFreeDistanceInCells * resolution, truncation);
-  const Eigen::Array2i& size = grid->geometry.size;
-  for (int j = 0; j < size.y(); ++j) {
-    for (int i = 0; i < size.x(); ++i) {
-      const int flat_index = FlatIndex(size, i, j);
-      const int value = stored.cells(flat_index);
-      const float distance = ValueToFloat(value, -truncation, truncation);
-      if (value == kUnknownValue ||
-          // "Unknown" and the lowest value both mean a weight of zero.
-          tsdf.weight_cells(flat_index) <= 1 ||
-          distance < -kSurfaceDistanceInCells * resolution) {
-        continue;
-      }
-      grid->known(i, j) = true;
-      grid->probability(i, j) =
-          kSurfaceProbability +
-          (kFreeProbability - kSurfaceProbability) *
-              std::min(1.f, std::abs(distance) / free_distance);
+  VisitCells(grid->geometry.size, [&](const int i, const int j, const int k) {
+    const int value = stored.cells(k);
+    const float distance = ValueToFloat(value, -truncation, truncation);
+    if (value == kUnknownValue ||
+        // "Unknown" and the lowest value both mean a weight of zero.
+        tsdf.weight_cells(k) <= 1 ||
+        distance < -kSurfaceDistanceInCells * resolution) {
+      return;
     }
-  }
+    grid->known(i, j) = true;
+    grid->probability(i, j) =
+        kSurfaceProbability +
+        (kFreeProbability - kSurfaceProbability) *
+            std::min(1.f, std::abs(distance) / free_distance);
+  });
   return absl::OkStatus();
 }
 

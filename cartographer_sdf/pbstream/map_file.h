@@ -52,10 +52,11 @@ struct MapState {
   std::map<std::string, int> num_records;
 };
 
-// Called for each submap with a grid. The grid is in the submap frame; the
-// cells of a TSDF are converted to occupancy, see grid_conversion.h.
-using SubmapCallback = std::function<void(const SubmapId&, const SubmapSummary&,
-                                          const OccupancyGrid&)>;
+// Called for each submap with a grid, to keep or to read. The grid is in the
+// submap frame; the cells of a TSDF are converted to occupancy, see
+// grid_conversion.h.
+using SubmapCallback =
+    std::function<void(const SubmapId&, const SubmapSummary&, OccupancyGrid)>;
 // Called for each node with filtered range data.
 using PointCloudCallback = std::function<void(const NodeId&, PointCloud2)>;
 

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/pbstream/map_reader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/grid_conversion.h"
@@ -25,6 +26,12 @@ constexpr uint32_t kMaxFormatVersion = 2;
 std::string KindName(const proto::SerializedData& data) {
   if (data.data_case() == Kind::DATA_NOT_SET) return "unknown";
   return data.GetDescriptor()->FindFieldByNumber(data.data_case())->name();
+}
+
+// As vector code, unlike Eigen's count().
+int CountTrue(const BoolArray& cells) {
+  return static_cast<int>(
+      std::count(cells.data(), cells.data() + cells.size(), true));
 }
 
 // Returns whether nodes have the same gravity alignment in both; an absent node
@@ -185,16 +192,16 @@ absl::Status MapReader::ReadSubmap(const proto::Submap& stored) {
     state_.submaps.emplace(id, summary);
     return absl::OkStatus();
   }
-  const absl::StatusOr<OccupancyGrid> grid =
+  absl::StatusOr<OccupancyGrid> grid =
       MakeOccupancyGrid(submap.grid(), summary.T_local_submap);
   if (!grid.ok()) {
     return Corrupted(absl::StrCat(name, grid.status().message()));
   }
   summary.is_tsdf = submap.grid().has_tsdf_2d();
   summary.geometry = grid->geometry;
-  summary.num_known_cells = static_cast<int>(grid->known.count());
+  summary.num_known_cells = CountTrue(grid->known);
   state_.submaps.emplace(id, summary);
-  if (visitor_.on_submap) visitor_.on_submap(id, summary, *grid);
+  if (visitor_.on_submap) visitor_.on_submap(id, summary, *std::move(grid));
   return absl::OkStatus();
 }
 

@@ -71,8 +71,8 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
     batch.clear();
   };
   const auto add = [&](const SubmapId& id, const SubmapSummary&,
-                       const OccupancyGrid& grid) {
-    batch.emplace(id, grid);
+                       OccupancyGrid grid) {
+    batch.emplace(id, std::move(grid));
     if (batch.size() >= kBatchSize) describe_batch();
   };
   absl::StatusOr<DescribedMap> map =
