@@ -59,7 +59,7 @@ int Measure(const std::string& map) {
     Eigen::ArrayXXf smoothed;
     std::vector<Keypoint> keypoints;
     times.Run("smooth and detect", [&] {
-      smoothed = SmoothField(*field, options.keypoint.smoothing_sigma_cells);
+      smoothed = SmoothFieldForPlace(options, *field);
       keypoints = DetectKeypoints(options.keypoint, *field, smoothed);
     });
     times.Run("describe", [&] {
