@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The part of a grid that is worth the work: seven of eight cells of a large
+// The part of a grid that is worth the work: nine of ten cells of a large
 // submap were never observed.
 
 #ifndef CARTOGRAPHER_SDF_FIELD_CELL_RUNS_H_

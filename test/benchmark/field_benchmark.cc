@@ -61,7 +61,7 @@ BENCHMARK(BM_SquaredDistanceTransform)
     ->Arg(2000)
     ->Arg(4000)
     ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+    ->Complexity(benchmark::oN);
 
 void BM_SquaredDistanceTransformOfSubmaps(benchmark::State& state) {
   const std::vector<BoolArray> submaps = RealWalls();
@@ -106,7 +106,7 @@ BENCHMARK(BM_OpenCvDistanceTransform)
     ->Arg(2000)
     ->Arg(4000)
     ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+    ->Complexity(benchmark::oN);
 
 void BM_OpenCvDistanceTransformOfSubmaps(benchmark::State& state) {
   cv::setNumThreads(1);
@@ -135,7 +135,7 @@ BENCHMARK(BM_MakeDistanceField)
     ->Arg(2000)
     ->Arg(4000)
     ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+    ->Complexity(benchmark::oN);
 
 }  // namespace
 }  // namespace cartographer_sdf

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // What the stages of describing a submap cost, one thread, as a CSV of
-// stage,milliseconds (means over the submaps of a map).
+// stage,milliseconds (of CPU; means over the submaps of a map).
 //
 // usage: measure_describing MAP.pbstream [give_back]
 //   give_back  leaves the allocator as it is, see tools/subcommand.h
 
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -29,11 +29,10 @@ namespace {
 class StageTimes {
  public:
   void Run(const std::string& stage, const std::function<void()>& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     work();
-    milliseconds_[stage] += std::chrono::duration<double, std::milli>(
-                                std::chrono::steady_clock::now() - begin)
-                                .count();
+    milliseconds_[stage] +=
+        1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   }
   void Print(const int num_submaps) const {
     std::cout << "stage,milliseconds\n";

@@ -86,7 +86,7 @@ BENCHMARK(BM_GridToDescriptors)
     ->RangeMultiplier(2)
     ->Range(200, 1600)
     ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+    ->Complexity(benchmark::oN);
 
 void BM_GridToDescriptorsOfSubmaps(benchmark::State& state) {
   const std::vector<OccupancyGrid>& submaps = benchmarks::RealSubmaps();
