@@ -4,8 +4,8 @@
 // Selects a mutually consistent set of closures. Two closures and the odometry
 // between their ends form a cycle; its closing error is compared with the
 // uncertainty that odometry accumulates on the way ([Mangelson2018]). Every
-// pair of closures is checked, and those that contradict weightier ones are
-// dropped.
+// pair of closures whose cycle can say something is checked, and those that
+// contradict weightier ones are dropped.
 //
 // The cycle of two closures far apart on the trajectory is uninformative; that
 // of two near each other separates true closures from perceptual aliasing. A
@@ -102,7 +102,8 @@ class VerdictTable {
 };
 
 // Returns one result per closure, in order; results do not depend on that
-// order. Quadratic in the number of closures.
+// order. Each closure is only compared with its partners (cycle_partners.h), so
+// that the time is linear in the number of closures.
 [[nodiscard]] std::vector<SelectionResult> SelectConsistent(
     const ConsistencyOptions& options,
     const std::map<SubmapId, OdometryPose>& odometry,
