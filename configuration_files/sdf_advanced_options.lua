@@ -312,6 +312,12 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- Sum of the scores of consistent closures that counts as support.
         min_support = 8.,
       },
+      -- Closures between submaps that better ones tie together are left out.
+      redundancy = {
+        -- However the submaps are divided in two, so many closures between the
+        -- two parts stay. Larger: a stiffer graph, a slower optimisation.
+        min_num_ties = 10,
+      },
       -- Conversion of a closure into constraints between submaps and nodes.
       constraints = {
         -- Number of nodes of each of the two submaps. Larger: a stronger,

@@ -148,7 +148,10 @@ std::string DescribeSplit(const JoinedSessions& joined,
                           const std::vector<const Session*>& sessions) {
   std::vector<size_t> groups = SingleGroups(sessions.size());
   for (const Closure& closure : closures) {
-    if (closure.status != ClosureStatus::kInGraph) continue;
+    if (closure.status != ClosureStatus::kInGraph &&
+        closure.status != ClosureStatus::kAlreadyInGraph) {
+      continue;
+    }
     JoinGroups(joined.SessionOf(closure.match.pair.reference),
                joined.SessionOf(closure.match.pair.query), &groups);
   }

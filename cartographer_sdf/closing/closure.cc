@@ -11,9 +11,17 @@ namespace cartographer_sdf {
 
 const char* ClosureStatusName(const ClosureStatus status) {
   // In the order of the enumerators.
-  constexpr const char* kNames[] = {
-      "selected", "in_graph", "inconsistent",  "unsupported", "scans_disagree",
-      "outlier",  "ready",    "detected_only", "gone"};
+  constexpr const char* kNames[] = {"selected",
+                                    "in_graph",
+                                    "inconsistent",
+                                    "unsupported",
+                                    "scans_disagree",
+                                    "outlier",
+                                    "already_in_graph",
+                                    "redundant",
+                                    "ready",
+                                    "detected_only",
+                                    "gone"};
   static_assert(std::size(kNames) ==
                 static_cast<size_t>(ClosureStatus::kGone) + 1);
   return kNames[static_cast<size_t>(status)];

@@ -16,12 +16,14 @@
 namespace cartographer_sdf {
 
 enum class ClosureStatus {
-  kSelected,       // consistent with the others; no constraints yet
-  kInGraph,        // its constraints are in the pose graph
-  kInconsistent,   // weightier closures contradict it, through odometry
-  kUnsupported,    // no other supports it, and its own score is too low
-  kScansDisagree,  // too few scans of its nodes fit where it puts them
-  kOutlier,        // the optimised pose graph contradicts it
+  kSelected,        // consistent with the others; no constraints yet
+  kInGraph,         // its constraints are in the pose graph
+  kInconsistent,    // weightier closures contradict it, through odometry
+  kUnsupported,     // no other supports it, and its own score is too low
+  kScansDisagree,   // too few scans of its nodes fit where it puts them
+  kOutlier,         // the optimised pose graph contradicts it
+  kAlreadyInGraph,  // constraints of the input say the same
+  kRedundant,       // better closures tie its submaps often enough
   // Only beside a live Cartographer.
   kReady,         // its constraints enter with the next optimisation
   kDetectedOnly,  // injection is switched off, or there is no pose graph

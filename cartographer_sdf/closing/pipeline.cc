@@ -4,6 +4,7 @@
 #include "cartographer_sdf/closing/pipeline.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -36,13 +37,79 @@ ClosureStatus StatusOf(const Selection selection) {
   LOG(FATAL) << "not a selection: " << static_cast<int>(selection);
 }
 
+// A closure of torn submaps has no weight.
+PairPose WeighedPair(const Closure& closure,
+                     const std::map<SubmapId, Tear>& torn_submaps) {
+  PairPose pair = closure.match.pair;
+  if (torn_submaps.count(pair.reference) > 0 ||
+      torn_submaps.count(pair.query) > 0) {
+    pair.score = std::min(pair.score, 0.);
+  }
+  return pair;
+}
+
+// Sets the status of selected closures that the graph has constraints of.
+void SkipThoseInGraph(const ConstraintOptions& options,
+                      const std::map<SubmapId, InsertedNodes>& nodes,
+                      const PoseGraph& pose_graph,
+                      std::vector<Closure>* const closures) {
+  std::vector<PairPose> pairs;
+  for (const Closure& closure : *closures) {
+    pairs.push_back(closure.match.pair);
+  }
+  const std::vector<bool> in_graph =
+      AreInGraph(options, nodes, pose_graph, pairs);
+  for (size_t k = 0; k < closures->size(); ++k) {
+    Closure& closure = (*closures)[k];
+    if (in_graph[k] && closure.status == ClosureStatus::kSelected) {
+      closure.status = ClosureStatus::kAlreadyInGraph;
+    }
+  }
+}
+
+// Divides closures without constraints into kSelected and kRedundant. Those in
+// the graph count as what they are: ties.
+void SkipRedundant(const RedundancyOptions& options,
+                   const std::map<SubmapId, Tear>& torn_submaps,
+                   std::vector<Closure>* const closures) {
+  std::vector<size_t> ties;
+  std::vector<PairPose> pairs;
+  for (size_t k = 0; k < closures->size(); ++k) {
+    Closure& closure = (*closures)[k];
+    if (closure.status == ClosureStatus::kRedundant) {
+      closure.status = ClosureStatus::kSelected;
+    }
+    if (closure.status != ClosureStatus::kSelected &&
+        closure.status != ClosureStatus::kInGraph &&
+        closure.status != ClosureStatus::kAlreadyInGraph) {
+      continue;
+    }
+    ties.push_back(k);
+    pairs.push_back(WeighedPair(closure, torn_submaps));
+  }
+  const std::vector<bool> keep = KeepTies(options, pairs);
+  for (size_t k = 0; k < ties.size(); ++k) {
+    Closure& closure = (*closures)[ties[k]];
+    if (!keep[k] && closure.status == ClosureStatus::kSelected) {
+      closure.status = ClosureStatus::kRedundant;
+    }
+  }
+}
+
+std::ptrdiff_t CountStatus(const std::vector<Closure>& closures,
+                           const ClosureStatus status) {
+  return std::count_if(
+      closures.begin(), closures.end(),
+      [status](const Closure& closure) { return closure.status == status; });
+}
+
 }  // namespace
 
 std::string Validate(const ClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.tear), Validate(options.consistency),
-        Validate(options.constraints), Validate(options.optimization),
-        Validate(options.outlier_rejection)}) {
+        Validate(options.redundancy), Validate(options.constraints),
+        Validate(options.optimization), Validate(options.outlier_rejection)}) {
     if (!error.empty()) return error;
   }
   return "";
@@ -72,11 +139,7 @@ std::vector<size_t> SelectClosures(
     const Closure& closure = (*closures)[k];
     if (!TakesPart(closure.status)) continue;
     voters.push_back(k);
-    pairs.push_back(closure.match.pair);
-    if (torn_submaps.count(pairs.back().reference) > 0 ||
-        torn_submaps.count(pairs.back().query) > 0) {
-      pairs.back().score = std::min(pairs.back().score, 0.);
-    }
+    pairs.push_back(WeighedPair(closure, torn_submaps));
   }
   const std::vector<SelectionResult> results =
       SelectConsistent(options, odometry, pairs);
@@ -114,6 +177,24 @@ void GenerateConstraints(const ConstraintOptions& options,
   });
 }
 
+void GenerateInformativeConstraints(
+    const ClosingOptions& options, const PoseGraph& pose_graph,
+    const std::map<SubmapId, Place>& places, const ScansByNode& scans,
+    const std::map<SubmapId, Tear>& torn_submaps, const Executor& executor,
+    std::vector<Closure>* const closures) {
+  const std::map<SubmapId, InsertedNodes> nodes = FindInsertedNodes(pose_graph);
+  SkipThoseInGraph(options.constraints, nodes, pose_graph, closures);
+  std::ptrdiff_t num_disagreeing = 0;
+  do {
+    SkipRedundant(options.redundancy, torn_submaps, closures);
+    num_disagreeing = CountStatus(*closures, ClosureStatus::kScansDisagree);
+    GenerateConstraints(options.constraints, nodes, places, scans, executor,
+                        closures);
+  } while (CountStatus(*closures, ClosureStatus::kScansDisagree) >
+               num_disagreeing &&
+           CountStatus(*closures, ClosureStatus::kRedundant) > 0);
+}
+
 ClosedGraph CloseGraph(const ClosingOptions& options, const GraphToClose& graph,
                        std::vector<Match> matches,
                        const std::set<int>& frozen_trajectories,
@@ -130,9 +211,9 @@ ClosedGraph CloseGraph(const ClosingOptions& options, const GraphToClose& graph,
   SelectClosures(options.consistency, *graph.odometry, result.torn_submaps,
                  &result.closures);
   clock->Begin("generate constraints");
-  GenerateConstraints(options.constraints, FindInsertedNodes(*graph.pose_graph),
-                      *graph.places, *graph.point_clouds, executor,
-                      &result.closures);
+  GenerateInformativeConstraints(options, *graph.pose_graph, *graph.places,
+                                 *graph.point_clouds, result.torn_submaps,
+                                 executor, &result.closures);
   OptimizedGraph optimized = OptimizeAndRejectOutliers(
       options.outlier_rejection, options.optimization, frozen_trajectories,
       *graph.pose_graph, &result.closures, clock->Begin("optimise"));

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // The pipeline from matches to an optimised pose graph: selects a mutually
-// consistent set of closures, generates their constraints, optimises, and
-// rejects outliers. close_loops and merge run all of it (CloseGraph); beside a
-// live Cartographer, which optimises by itself, the first two stages run for
-// each new match.
+// consistent set of closures, leaves out what the graph says already, generates
+// their constraints, optimises, and rejects outliers. close_loops and merge run
+// all of it (CloseGraph); beside a live Cartographer, which optimises by
+// itself, closures are selected and their constraints generated for each new
+// match.
 
 #ifndef CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
 #define CARTOGRAPHER_SDF_CLOSING_PIPELINE_H_
@@ -19,6 +20,7 @@
 #include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/closing/constraint_generation.h"
 #include "cartographer_sdf/closing/outlier_rejection.h"
+#include "cartographer_sdf/closing/redundancy.h"
 #include "cartographer_sdf/closing/torn_submaps.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/stage_clock.h"
@@ -36,6 +38,7 @@ struct ClosingOptions {
   bool detect_torn_submaps = true;
   TearOptions tear;
   ConsistencyOptions consistency;
+  RedundancyOptions redundancy;
   ConstraintOptions constraints;
   OptimizationOptions optimization;
   // Whether odometry weights inferred from the map (optimization.h) replace
@@ -69,6 +72,16 @@ void GenerateConstraints(const ConstraintOptions& options,
                          const std::map<SubmapId, Place>& places,
                          const ScansByNode& scans, const Executor& executor,
                          std::vector<Closure>* closures);
+
+// Generates the constraints of those selected closures that carry information,
+// and sets the status of the others: kAlreadyInGraph or kRedundant
+// (redundancy.h). Where the scans of a closure disagree, those that it made
+// redundant take part again.
+void GenerateInformativeConstraints(
+    const ClosingOptions& options, const PoseGraph& pose_graph,
+    const std::map<SubmapId, Place>& places, const ScansByNode& scans,
+    const std::map<SubmapId, Tear>& torn_submaps, const Executor& executor,
+    std::vector<Closure>* closures);
 
 // The map that CloseGraph closes; nothing is owned.
 struct GraphToClose {

@@ -196,6 +196,10 @@ inline void VisitOptions(OptionVisitor& visit, ConsistencyOptions& options) {
   visit("min_support", options.min_support);
 }
 
+inline void VisitOptions(OptionVisitor& visit, RedundancyOptions& options) {
+  visit("min_num_ties", options.min_num_ties);
+}
+
 inline void VisitOptions(OptionVisitor& visit, ConstraintOptions& options) {
   visit("num_nodes_per_submap", options.num_nodes_per_submap);
   visit("min_num_constraints", options.min_num_constraints);
@@ -258,6 +262,7 @@ inline void VisitOptions(OptionVisitor& visit, ClosingOptions& options) {
   visit("detect_torn_submaps", options.detect_torn_submaps);
   visit("tear", options.tear);
   visit("consistency", options.consistency);
+  visit("redundancy", options.redundancy);
   visit("constraints", options.constraints);
   visit("optimization", options.optimization);
   visit("infer_odometry_weights", options.infer_odometry_weights);

@@ -27,6 +27,10 @@ std::string ReasonOf(const Closure& closure) {
     case ClosureStatus::kOutlier:
       return "the optimised map contradicts it, by " +
              FormatError(closure.graph_error);
+    case ClosureStatus::kAlreadyInGraph:
+      return "constraints of the map say the same already";
+    case ClosureStatus::kRedundant:
+      return "better closures tie its submaps often enough";
     case ClosureStatus::kSelected:
     case ClosureStatus::kReady:
     case ClosureStatus::kDetectedOnly:
@@ -89,6 +93,9 @@ std::vector<std::pair<std::string, std::string>> MakeSummary(
       {"Scans disagree",
        absl::StrCat(Count(result, ClosureStatus::kScansDisagree))},
       {"Outliers", absl::StrCat(Count(result, ClosureStatus::kOutlier))},
+      {"Already in the graph",
+       absl::StrCat(Count(result, ClosureStatus::kAlreadyInGraph))},
+      {"Redundant", absl::StrCat(Count(result, ClosureStatus::kRedundant))},
       {"New constraints",
        absl::StrCat(result.closed.pose_graph.constraints.size() -
                     result.state.pose_graph.constraints.size())}};

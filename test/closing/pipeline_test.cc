@@ -161,6 +161,74 @@ TEST_F(CloseGraphTest, TooFewConstraintsAreNoClosure) {
   EXPECT_EQ(closed.pose_graph.constraints.size(), graph_.constraints.size());
 }
 
+TEST_F(CloseGraphTest, ClosingAgainAddsNothing) {
+  const std::vector<Match> matches = {TrueMatch(9.)};
+  graph_ = Close(matches).pose_graph;
+  const ClosedGraph again = Close(matches);
+  EXPECT_THAT(Statuses(again.closures),
+              ElementsAre(ClosureStatus::kAlreadyInGraph));
+  EXPECT_EQ(again.pose_graph.constraints.size(), graph_.constraints.size());
+  EXPECT_THAT(again.optimizations, IsEmpty());
+  for (const auto& [id, pose] : graph_.submap_poses) {
+    EXPECT_EQ(again.pose_graph.submap_poses.at(id).translation(),
+              pose.translation());
+  }
+}
+
+TEST_F(CloseGraphTest, AClosureThatTheGraphContradictsIsTriedAsBefore) {
+  Match elsewhere = TrueMatch(9.);
+  elsewhere.pair.T_reference_query =
+      elsewhere.pair.T_reference_query * Rigid2(1., 0., 0.);
+  graph_ = Close({elsewhere}).pose_graph;
+  const ClosedGraph closed = Close({TrueMatch(9.)});
+  EXPECT_EQ(closed.optimizations.empty(), false);
+  EXPECT_NE(closed.closures[0].status, ClosureStatus::kAlreadyInGraph);
+}
+
+TEST_F(CloseGraphTest, FewConstraintsInTheGraphAreNotEnough) {
+  const std::vector<Match> matches = {TrueMatch(9.)};
+  graph_ = Close(matches).pose_graph;
+  // Two of eight stay.
+  graph_.constraints.resize(graph_.constraints.size() - 6);
+  EXPECT_THAT(Statuses(Close(matches).closures),
+              ElementsAre(ClosureStatus::kInGraph));
+}
+
+TEST_F(CloseGraphTest, TheBestOfSeveralTiesStays) {
+  const std::vector<Match> matches = {TrueMatch(8.), TrueMatch(9.),
+                                      TrueMatch(7.)};
+  options_.redundancy.min_num_ties = 1;
+  EXPECT_THAT(Statuses(Close(matches).closures),
+              ElementsAre(ClosureStatus::kRedundant, ClosureStatus::kInGraph,
+                          ClosureStatus::kRedundant));
+  options_.redundancy.min_num_ties = 2;
+  EXPECT_THAT(Statuses(Close(matches).closures),
+              ElementsAre(ClosureStatus::kInGraph, ClosureStatus::kInGraph,
+                          ClosureStatus::kRedundant));
+}
+
+// Where scans disagree with the best, the next one has its place.
+TEST_F(CloseGraphTest, ARedundantClosureReplacesOneThatScansRefuse) {
+  for (const Constraint& constraint : graph_.constraints) {
+    const Rigid2 T_world_node =
+        visits_.T_world_submap(constraint.submap) * constraint.T_submap_node;
+    for (const SurfacePoint& point :
+         testing::TakeScan(testing::TwoRooms(), T_world_node)) {
+      clouds_[constraint.node].push_back(point.position.cast<float>());
+    }
+  }
+  options_.detect_torn_submaps = false;
+  options_.redundancy.min_num_ties = 1;
+  options_.consistency.max_cycle_sigma_meters = 1e-6;
+  Match elsewhere = TrueMatch(9.5);
+  elsewhere.pair.T_reference_query =
+      elsewhere.pair.T_reference_query * Rigid2(0.8, 0.7, 0.3);
+  EXPECT_THAT(
+      Statuses(Close({elsewhere, TrueMatch(9.), TrueMatch(8.)}).closures),
+      ElementsAre(ClosureStatus::kScansDisagree, ClosureStatus::kInGraph,
+                  ClosureStatus::kRedundant));
+}
+
 TEST_F(CloseGraphTest, WhatIsNotAcceptedIsNoClosure) {
   Match refused = TrueMatch(9.);
   refused.verdict = Verdict::kAmbiguous;
