@@ -63,7 +63,7 @@ struct Tear {
 };
 
 // Returns the clearest tear, or none if no two parts indicate one. `scans` are
-// in the order in which they were inserted. Tens of milliseconds.
+// in the order in which they were inserted.
 [[nodiscard]] std::optional<Tear> FindTear(
     const TearOptions& options, const std::vector<PlacedScan>& scans);
 
