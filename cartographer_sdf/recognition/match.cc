@@ -121,11 +121,16 @@ MatchOptions PaperMatchOptions() {
 
 void FindSelfSimilarities(const MatchOptions& options, Place* const place) {
   CHECK_EQ(Validate(options), "");
-  place->surface.self_similar_poses = FindSelfSimilarPoses(
-      options.verification, place->surface,
-      ProposePoses(options.hypotheses, place->features, place->features,
-                   FindCorrespondences(options.correspondence, place->features,
-                                       place->features)));
+  place->surface.self_similar_poses =
+      FindSelfSimilarPoses(options.verification, place->surface,
+                           ProposePoses(options, *place, *place));
+}
+
+std::vector<Rigid2> ProposePoses(const MatchOptions& options,
+                                 const Place& reference, const Place& query) {
+  return ProposePoses(options.hypotheses, reference.features, query.features,
+                      FindCorrespondences(options.correspondence,
+                                          reference.features, query.features));
 }
 
 std::optional<Match> MatchPlaces(

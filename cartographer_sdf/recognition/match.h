@@ -77,6 +77,11 @@ struct Match {
 // itself, so that rivals are detected when it is matched with others.
 void FindSelfSimilarities(const MatchOptions& options, Place* place);
 
+// Returns the poses for which the features of both places vote.
+[[nodiscard]] std::vector<Rigid2> ProposePoses(const MatchOptions& options,
+                                               const Place& reference,
+                                               const Place& query);
+
 // Returns nullopt if there is no pose worth reporting. Poses that others
 // propose (an index, say) are tried beside those of the correspondences; method
 // kPaper ignores them.

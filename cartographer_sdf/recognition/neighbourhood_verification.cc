@@ -116,10 +116,15 @@ class NeighbourhoodVerifier {
   [[nodiscard]] std::optional<Decision> Decide(const Task& task) const {
     const Place& reference = references_.places->at(task.ids.first);
     const Place& query = queries_.places->at(task.ids.second);
+    // A pair that was never matched needs rivals of its own.
+    std::vector<Rigid2> hypotheses;
+    if (task.match == nullptr) {
+      hypotheses = ProposePoses(match_options_, reference, query);
+    }
     std::vector<Opinion> opinions;
     for (VerifiedPose& verified :
          VerifyPoses(match_options_.verification, reference.surface,
-                     query.surface, PosesOf(task))) {
+                     query.surface, PosesOf(task), hypotheses)) {
       Opinion opinion;
       if (verified.score >= options_.min_pair_score) {
         opinion.neighbourhood = Measure(

@@ -59,6 +59,13 @@ class PairVerifier {
 
   [[nodiscard]] const Eigen::Vector2d& centroid() const { return centroid_; }
 
+  static void SortByScore(std::vector<Candidate>* const candidates) {
+    std::stable_sort(candidates->begin(), candidates->end(),
+                     [](const Candidate& a, const Candidate& b) {
+                       return a.score > b.score;
+                     });
+  }
+
   // Returns registered poses, best first, ties in the order given.
   [[nodiscard]] std::vector<Candidate> Refine(
       const std::vector<Rigid2>& guesses) const {
@@ -179,13 +186,6 @@ class PairVerifier {
                  Margin(candidate, rivals));
   }
 
-  static void SortByScore(std::vector<Candidate>* const candidates) {
-    std::stable_sort(candidates->begin(), candidates->end(),
-                     [](const Candidate& a, const Candidate& b) {
-                       return a.score > b.score;
-                     });
-  }
-
   [[nodiscard]] std::vector<Candidate> DistinctFrom(
       const Candidate& candidate, const std::vector<Candidate>& others) const {
     std::vector<Candidate> distinct;
@@ -288,9 +288,14 @@ std::optional<VerifiedPose> VerifyHypotheses(
 std::vector<VerifiedPose> VerifyPoses(const VerificationOptions& options,
                                       const SurfaceModel& reference,
                                       const SurfaceModel& query,
-                                      const std::vector<Rigid2>& poses) {
+                                      const std::vector<Rigid2>& poses,
+                                      const std::vector<Rigid2>& hypotheses) {
   const PairVerifier verifier(options, reference, query);
-  const std::vector<Candidate> candidates = verifier.Refine(poses);
+  std::vector<Candidate> candidates = verifier.Refine(poses);
+  for (Candidate& candidate : verifier.RefineBest(hypotheses)) {
+    candidates.push_back(std::move(candidate));
+  }
+  PairVerifier::SortByScore(&candidates);
   std::vector<VerifiedPose> verified;
   for (const Candidate& candidate :
        KeepDistinct(candidates, PoseOf, verifier.centroid(), kRivalTolerance,

@@ -88,12 +88,14 @@ struct VerifiedPose {
     const SurfaceModel& query,
     const std::vector<Rigid2>& hypotheses_T_reference_query);
 
-// Registers and judges each of the poses, whatever its score; best first. Of
-// poses that registration makes nearly equal, keeps the best. Rivals are the
-// other poses and those listed above.
+// Registers and judges each of the poses, whatever its score, and the best of
+// further hypotheses, as VerifyHypotheses chooses them; best first. Of poses
+// that registration makes nearly equal, keeps the best. Rivals are the other
+// poses and those listed above.
 [[nodiscard]] std::vector<VerifiedPose> VerifyPoses(
     const VerificationOptions& options, const SurfaceModel& reference,
-    const SurfaceModel& query, const std::vector<Rigid2>& T_reference_query);
+    const SurfaceModel& query, const std::vector<Rigid2>& T_reference_query,
+    const std::vector<Rigid2>& hypotheses_T_reference_query);
 
 // Registers and judges one claimed pose against `competitors` and all rivals
 // above, even if it is unlikely. None if the walls do not determine a pose.
