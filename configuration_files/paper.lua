@@ -22,5 +22,7 @@ match.correspondence.use_ratio_test = true
 match.correspondence.max_ratio = 0.75
 -- The paper tells distances apart by the descriptor's last entry alone.
 match.correspondence.max_clearance_difference_meters = 1e6
+-- The paper compares every pair of submaps.
+SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.use_retrieval = false
 
 return SDF_GLOBAL_CONSTRAINTS

@@ -83,6 +83,7 @@ TEST(OptionsTest, PaperPresetEqualsTheNamedDefaults) {
   Options paper;
   paper.loop_closing.place = PaperPlaceOptions();
   paper.loop_closing.recognition.match = PaperMatchOptions();
+  paper.loop_closing.recognition.use_retrieval = false;
   EXPECT_EQ(FormatOptions(*options), FormatOptions(paper));
 }
 
