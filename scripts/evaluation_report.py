@@ -238,7 +238,8 @@ def all_pairs(runner, name, reference, query=None):
         file = runner.work / name / f"{method}.csv"
         file.parent.mkdir(exist_ok=True)
         options = runner.directory / f"{method}.options.lua"
-        runner.run("match", *inputs, "--method", method, "--output", file,
+        runner.run("match", *inputs, "--method", method, "--all_pairs",
+                   "--output", file,
                    *([] if options in runner.written else
                      ["--options_in_force", options]))
         runner.written.add(options)

@@ -418,10 +418,10 @@ class Workshop:
         between = ["--query", query] if query else []
         if not (terms.exists() and matches.exists()):
             tell(f"match {name}")
-            self.run("match", "--input", map_path, *between, "--output",
-                     matches, *(["--neighbour_terms"] if self.neighbours
-                                else ["--alone", "--terms"]), terms,
-                     "--threads", self.threads,
+            self.run("match", "--input", map_path, *between, "--all_pairs",
+                     "--output", matches,
+                     *(["--neighbour_terms"] if self.neighbours
+                       else ["--alone", "--terms"]), terms, "--threads", self.threads,
                      "--configuration_directory", self.folder,
                      "--configuration_basename", "learn.lua")
         num_positives = 0

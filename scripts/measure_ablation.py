@@ -56,6 +56,8 @@ VARIANTS = [
     Variant("shipped", "all options as shipped"),
     Variant("alone", "each pair by itself, without its neighbourhood", "",
             ("--alone",), False),
+    Variant("all_pairs", "every pair is matched, not only those that the index "
+            "proposes", "", ("--all_pairs",)),
     Variant("no_proposals", "neighbourhoods are verified, but propose no poses",
             "neighbourhood.min_proposing_score = 1e9"),
     Variant("paper", "the method as published: ratio test, RANSAC, inliers "

@@ -49,7 +49,7 @@ measure() {
     for method in sdf paper; do
       echo
       echo "${name}, ${method}:"
-      show match --input "${map}" --method "${method}" --output "${WORK_DIR}/matches.csv"
+      show match --input "${map}" --method "${method}" --all_pairs --output "${WORK_DIR}/matches.csv"
       show evaluate --input "${map}" --truth "${DATA_DIR}/${name}.truth.csv" \
         --matches "${WORK_DIR}/matches.csv"
     done
