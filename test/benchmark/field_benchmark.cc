@@ -3,8 +3,8 @@
 
 // Time of the distance transform, beside OpenCV's where it was found, and of
 // the field: all must be linear in the number of cells. On floors of offices of
-// as many cells a side as the argument says, and on the submaps of the map that
-// the environment variable CARTOGRAPHER_SDF_BENCHMARK_MAP names.
+// as many cells a side as the argument says, and on the submaps of the maps
+// that the environment variable CARTOGRAPHER_SDF_BENCHMARK_MAP names.
 
 #include <map>
 

@@ -3,7 +3,7 @@
 
 // Time that describing a submap of 800 x 800 cells takes, stage by stage; and
 // from grid to descriptors by the number of cells, which must be linear, and on
-// the submaps of the map that the environment variable
+// the submaps of the maps that the environment variable
 // CARTOGRAPHER_SDF_BENCHMARK_MAP names.
 
 #include "benchmark/benchmark.h"

@@ -1,14 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The submaps of the map that the environment variable
-// CARTOGRAPHER_SDF_BENCHMARK_MAP names.
+// The submaps of the maps that the environment variable
+// CARTOGRAPHER_SDF_BENCHMARK_MAP names; colons stand between several.
 
 #ifndef TEST_BENCHMARK_REAL_SUBMAPS_H_
 #define TEST_BENCHMARK_REAL_SUBMAPS_H_
 
 #include <cstdlib>
 #include <iostream>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,28 +22,41 @@ namespace cartographer_sdf::benchmarks {
 constexpr char kNoRealSubmaps[] =
     "CARTOGRAPHER_SDF_BENCHMARK_MAP names no readable map";
 
-// Returns at most some thirty, evenly spaced; none, with a line that says why,
-// where the map is absent.
+// Some thirty at most, evenly spaced; none, with a line that says why, where
+// the map is absent.
+[[nodiscard]] inline std::vector<OccupancyGrid> SomeSubmaps(
+    const std::string& path) {
+  std::vector<OccupancyGrid> submaps;
+  const auto add = [&submaps](const SubmapId&, const SubmapSummary&,
+                              OccupancyGrid grid) {
+    submaps.push_back(std::move(grid));
+  };
+  const absl::StatusOr<MapState> map = ReadMap(path, {add});
+  if (!map.ok()) {
+    std::cerr << map.status().message() << "\n";
+    return {};
+  }
+  constexpr size_t kMaxNumber = 30;
+  const size_t step = submaps.size() / kMaxNumber + 1;
+  for (size_t k = 0; k * step < submaps.size(); ++k) {
+    std::swap(submaps[k], submaps[k * step]);
+  }
+  submaps.resize((submaps.size() + step - 1) / step);
+  return submaps;
+}
+
+// Returns those of all maps that are named.
 [[nodiscard]] inline const std::vector<OccupancyGrid>& RealSubmaps() {
   static const auto& submaps = *[] {
     auto* const all = new std::vector<OccupancyGrid>();
-    const char* const path = std::getenv("CARTOGRAPHER_SDF_BENCHMARK_MAP");
-    if (path == nullptr) return all;
-    const auto add = [all](const SubmapId&, const SubmapSummary&,
-                           OccupancyGrid grid) {
-      all->push_back(std::move(grid));
-    };
-    const absl::StatusOr<MapState> map = ReadMap(path, {add});
-    if (!map.ok()) {
-      std::cerr << map.status().message() << "\n";
-      all->clear();
+    const char* const paths = std::getenv("CARTOGRAPHER_SDF_BENCHMARK_MAP");
+    if (paths == nullptr) return all;
+    std::istringstream stream(paths);
+    for (std::string path; std::getline(stream, path, ':');) {
+      for (OccupancyGrid& grid : SomeSubmaps(path)) {
+        all->push_back(std::move(grid));
+      }
     }
-    constexpr size_t kMaxNumber = 30;
-    const size_t step = all->size() / kMaxNumber + 1;
-    for (size_t k = 0; k * step < all->size(); ++k) {
-      std::swap((*all)[k], (*all)[k * step]);
-    }
-    all->resize((all->size() + step - 1) / step);
     return all;
   }();
   return submaps;
