@@ -44,6 +44,9 @@ class PairQuantizer {
     const uint64_t kinds =
         static_cast<uint64_t>(first.keypoint.kind) * kNumKeypointKinds +
         static_cast<uint64_t>(second.keypoint.kind);
+    keys->reserve(keys->size() +
+                  static_cast<size_t>(c1.count * c2.count * l.count * o1.count *
+                                      o2.count));
     for (int a = 0; a < c1.count; ++a) {
       for (int b = 0; b < c2.count; ++b) {
         for (int c = 0; c < l.count; ++c) {

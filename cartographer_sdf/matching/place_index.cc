@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -21,6 +22,9 @@ constexpr size_t kMaxLoad = 8;
 constexpr int kNumDirections = 256;
 constexpr float kMetersPerUnit = 0.01f;
 constexpr uint32_t kMaxNumSlots = 1u << 24;
+
+// Memory is on its way for so many lookups before the first is looked at.
+constexpr size_t kNumFetchedAhead = 16;
 
 // Submaps whose votes are sorted into poses: of thousands, the others have too
 // few votes to be among the best.
@@ -82,6 +86,33 @@ class PoseOfPair {
 };
 
 }  // namespace
+
+// Which slots a query skips. The predicate is asked once about each that the
+// query meets.
+class PlaceIndex::SlotFilter {
+ public:
+  SlotFilter(const std::vector<Slot>& slots, const Predicate& is_excluded)
+      : slots_(slots),
+        is_excluded_(is_excluded),
+        answers_(slots.size(), Answer::kUnknown) {}
+
+  [[nodiscard]] bool Skips(const uint32_t slot) {
+    Answer& answer = answers_[slot];
+    if (answer == Answer::kUnknown) {
+      const bool skips = slots_[slot].is_removed ||
+                         (is_excluded_ && is_excluded_(slots_[slot].id));
+      answer = skips ? Answer::kSkip : Answer::kKeep;
+    }
+    return answer == Answer::kSkip;
+  }
+
+ private:
+  enum class Answer : char { kUnknown, kKeep, kSkip };
+
+  const std::vector<Slot>& slots_;
+  const Predicate& is_excluded_;
+  std::vector<Answer> answers_;
+};
 
 std::string Validate(const RetrievalOptions& options) {
   for (const std::string& error :
@@ -212,63 +243,92 @@ size_t PlaceIndex::MemoryUse() const {
   return bytes;
 }
 
-std::vector<PlaceIndex::Lookup> PlaceIndex::PlanLookups(
+std::vector<PlaceIndex::Lookup> PlaceIndex::FindBuckets(
     const std::vector<KeypointPair>& pairs) const {
   std::vector<Lookup> lookups;
-  for (size_t k = 0; k < pairs.size(); ++k) {
+  for (uint32_t k = 0; k < pairs.size(); ++k) {
     for (const uint32_t key : pairs[k].keys) {
-      const size_t size = BucketOf(key).size();
-      if (size > 0) lookups.push_back({size, k, key});
+      lookups.push_back({nullptr, 0, k, key, 0.f});
     }
   }
-  std::sort(lookups.begin(), lookups.end(),
-            [](const Lookup& a, const Lookup& b) {
-              return std::tie(a.bucket_size, a.pair, a.key) <
-                     std::tie(b.bucket_size, b.pair, b.key);
-            });
-  size_t num_visited = 0;
   size_t count = 0;
-  while (count < lookups.size()) {
-    num_visited += lookups[count].bucket_size;
-    if (num_visited > static_cast<size_t>(options_.max_num_visited_pairs)) {
-      break;
+  for (size_t k = 0; k < lookups.size(); ++k) {
+    if (k + kNumFetchedAhead < lookups.size()) {
+      __builtin_prefetch(&BucketOf(lookups[k + kNumFetchedAhead].key));
     }
+    const std::vector<Entry>& bucket = BucketOf(lookups[k].key);
+    if (bucket.empty()) continue;
+    lookups[count] = lookups[k];
+    lookups[count].entries = bucket.data();
+    lookups[count].num_entries = static_cast<uint32_t>(bucket.size());
     ++count;
   }
   lookups.resize(count);
   return lookups;
 }
 
-std::vector<PlaceIndex::SlotVote> PlaceIndex::CollectVotes(
-    const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
-    const std::vector<char>& is_excluded) const {
-  const float num_submaps = static_cast<float>(slots_by_id_.size());
-  std::vector<SlotVote> votes;
-  for (const Lookup& lookup : PlanLookups(pairs)) {
-    const PoseOfPair pose_of(pairs[lookup.pair], centroid);
-    const size_t begin = votes.size();
-    for (const Entry& entry : BucketOf(lookup.key)) {
-      if (entry.key != lookup.key || is_excluded[entry.slot]) continue;
-      const Eigen::Vector2f middle =
-          slots_[entry.slot].origin +
-          kMetersPerUnit * Eigen::Vector2f(entry.x, entry.y);
-      votes.push_back({entry.slot, pose_of(middle, entry.direction, 1.f)});
+std::vector<PlaceIndex::Lookup> PlaceIndex::PlanLookups(
+    const std::vector<KeypointPair>& pairs) const {
+  const std::vector<Lookup> lookups = FindBuckets(pairs);
+  // By counting, since most buckets are small: the lookups of each size lie
+  // where those of smaller ones end.
+  std::vector<uint32_t> ends(1, 0);
+  for (const Lookup& lookup : lookups) {
+    if (lookup.num_entries >= ends.size()) {
+      ends.resize(lookup.num_entries + 1, 0);
     }
-    // Inverse document frequency of the key.
-    const float weight =
-        std::log1p(num_submaps / static_cast<float>(votes.size() - begin + 1));
-    for (size_t v = begin; v < votes.size(); ++v) votes[v].vote.weight = weight;
+    ++ends[lookup.num_entries];
   }
-  return votes;
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<Lookup> planned(lookups.size());
+  for (size_t k = lookups.size(); k > 0; --k) {
+    planned[--ends[lookups[k - 1].num_entries]] = lookups[k - 1];
+  }
+  size_t num_visited = 0;
+  size_t count = 0;
+  while (count < planned.size()) {
+    num_visited += planned[count].num_entries;
+    if (num_visited > static_cast<size_t>(options_.max_num_visited_pairs)) {
+      break;
+    }
+    ++count;
+  }
+  planned.resize(count);
+  return planned;
 }
 
-std::vector<uint32_t> PlaceIndex::MostVoted(
-    const std::vector<SlotVote>& votes) const {
+std::vector<float> PlaceIndex::WeighSlots(
+    const Predicate& is_excluded, std::vector<Lookup>* const lookups) const {
+  SlotFilter filter(slots_, is_excluded);
+  const float num_submaps = static_cast<float>(slots_by_id_.size());
   std::vector<float> weights(slots_.size(), 0.f);
+  std::vector<uint32_t> found;
+  for (size_t k = 0; k < lookups->size(); ++k) {
+    const Lookup& ahead =
+        (*lookups)[std::min(k + kNumFetchedAhead, lookups->size() - 1)];
+    __builtin_prefetch(ahead.entries);
+    __builtin_prefetch(ahead.entries + ahead.num_entries - 1);
+    Lookup& lookup = (*lookups)[k];
+    found.clear();
+    for (uint32_t e = 0; e < lookup.num_entries; ++e) {
+      const Entry& entry = lookup.entries[e];
+      if (entry.key == lookup.key && !filter.Skips(entry.slot)) {
+        found.push_back(entry.slot);
+      }
+    }
+    if (found.empty()) continue;
+    // Inverse document frequency of the key.
+    lookup.weight =
+        std::log1p(num_submaps / static_cast<float>(found.size() + 1));
+    for (const uint32_t slot : found) weights[slot] += lookup.weight;
+  }
+  return weights;
+}
+
+std::vector<uint32_t> PlaceIndex::Heaviest(std::vector<float> weights) const {
   std::vector<uint32_t> voted;
-  for (const SlotVote& vote : votes) {
-    if (weights[vote.slot] == 0.f) voted.push_back(vote.slot);
-    weights[vote.slot] += vote.vote.weight;
+  for (uint32_t slot = 0; slot < weights.size(); ++slot) {
+    if (weights[slot] > 0.f) voted.push_back(slot);
   }
   if (voted.size() <= kMaxNumVotedSubmaps) return voted;
   for (const uint32_t slot : voted) {
@@ -285,15 +345,26 @@ std::vector<uint32_t> PlaceIndex::MostVoted(
 }
 
 std::vector<std::vector<PoseVote>> PlaceIndex::VotesBySlot(
-    const std::vector<SlotVote>& votes,
+    const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
+    const std::vector<Lookup>& lookups,
     const std::vector<uint32_t>& slots) const {
   constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
   std::vector<uint32_t> ranks(slots_.size(), kNone);
   for (uint32_t k = 0; k < slots.size(); ++k) ranks[slots[k]] = k;
+  std::vector<PoseOfPair> poses;
+  poses.reserve(pairs.size());
+  for (const KeypointPair& pair : pairs) poses.emplace_back(pair, centroid);
   std::vector<std::vector<PoseVote>> votes_by_slot(slots.size());
-  for (const SlotVote& vote : votes) {
-    if (ranks[vote.slot] == kNone) continue;
-    votes_by_slot[ranks[vote.slot]].push_back(vote.vote);
+  for (const Lookup& lookup : lookups) {
+    for (uint32_t e = 0; e < lookup.num_entries; ++e) {
+      const Entry& entry = lookup.entries[e];
+      if (entry.key != lookup.key || ranks[entry.slot] == kNone) continue;
+      const Eigen::Vector2f middle =
+          slots_[entry.slot].origin +
+          kMetersPerUnit * Eigen::Vector2f(entry.x, entry.y);
+      votes_by_slot[ranks[entry.slot]].push_back(
+          poses[lookup.pair](middle, entry.direction, lookup.weight));
+    }
   }
   return votes_by_slot;
 }
@@ -301,18 +372,15 @@ std::vector<std::vector<PoseVote>> PlaceIndex::VotesBySlot(
 std::vector<RetrievalCandidate> PlaceIndex::Rank(
     const FeatureSet& features, const Predicate& is_excluded) const {
   if (features.features.empty()) return {};
-  std::vector<char> excluded(slots_.size(), 1);
-  for (const auto& [id, slot] : slots_by_id_) {
-    excluded[slot] = is_excluded && is_excluded(id);
-  }
   const Eigen::Vector2d centroid = KeypointCentroid(features);
   const std::vector<KeypointPair> pairs =
       PairsToSeek(options_.pairs, options_.num_sought_partners,
                   static_cast<size_t>(options_.max_num_sought_pairs), features);
-  const std::vector<SlotVote> votes = CollectVotes(pairs, centroid, excluded);
-  const std::vector<uint32_t> slots = MostVoted(votes);
+  std::vector<Lookup> lookups = PlanLookups(pairs);
+  const std::vector<uint32_t> slots =
+      Heaviest(WeighSlots(is_excluded, &lookups));
   const std::vector<std::vector<PoseVote>> votes_by_slot =
-      VotesBySlot(votes, slots);
+      VotesBySlot(pairs, centroid, lookups, slots);
   std::vector<RetrievalCandidate> candidates;
   for (size_t k = 0; k < slots.size(); ++k) {
     const std::vector<VotedPose> poses = HeaviestPoses(

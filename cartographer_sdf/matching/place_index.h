@@ -104,36 +104,39 @@ class PlaceIndex {
     int num_pairs = 0;
     bool is_removed = false;
   };
-  // A key of one of a query's pairs.
+  // A key of one of a query's pairs, and its bucket.
   struct Lookup {
-    size_t bucket_size;
-    size_t pair;
+    const Entry* entries;
+    uint32_t num_entries;
+    uint32_t pair;
     uint32_t key;
+    float weight;  // of each entry with the key
   };
-  // A vote for a pose of the query in the submap of a slot.
-  struct SlotVote {
-    uint32_t slot;
-    PoseVote vote;
-  };
+  class SlotFilter;
   [[nodiscard]] std::vector<Entry>& BucketOf(uint32_t key);
   [[nodiscard]] const std::vector<Entry>& BucketOf(uint32_t key) const;
   // Doubles the number of buckets.
   void Grow();
   // Forgets the pairs of removed submaps.
   void Sweep();
+  // Returns the lookups of all keys whose buckets hold anything, in the order
+  // of the pairs.
+  [[nodiscard]] std::vector<Lookup> FindBuckets(
+      const std::vector<KeypointPair>& pairs) const;
   // Returns where to look for the pairs, rarest keys first, as far as
   // RetrievalOptions::max_num_visited_pairs allows.
   [[nodiscard]] std::vector<Lookup> PlanLookups(
       const std::vector<KeypointPair>& pairs) const;
-  [[nodiscard]] std::vector<SlotVote> CollectVotes(
-      const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
-      const std::vector<char>& is_excluded) const;
-  // Returns the slots with the most votes for their numbers of pairs.
-  [[nodiscard]] std::vector<uint32_t> MostVoted(
-      const std::vector<SlotVote>& votes) const;
+  // Sets the weights of the lookups and returns their sums for each slot.
+  [[nodiscard]] std::vector<float> WeighSlots(
+      const Predicate& is_excluded, std::vector<Lookup>* lookups) const;
+  // Returns the slots with the most weight for their numbers of pairs.
+  [[nodiscard]] std::vector<uint32_t> Heaviest(
+      std::vector<float> weights) const;
   // Returns the votes for each of the slots.
   [[nodiscard]] std::vector<std::vector<PoseVote>> VotesBySlot(
-      const std::vector<SlotVote>& votes,
+      const std::vector<KeypointPair>& pairs, const Eigen::Vector2d& centroid,
+      const std::vector<Lookup>& lookups,
       const std::vector<uint32_t>& slots) const;
   // Returns all submaps with a vote, best first.
   [[nodiscard]] std::vector<RetrievalCandidate> Rank(
