@@ -84,7 +84,7 @@ Subcommand CloseLoopsSubcommand() {
       "find the loop closures of a map and optimise it",
       "--input A.pbstream --output B.pbstream [--closures C.csv] "
       "[--report DIR]",
-      "Compares every pair of submaps by the shape of their free space, "
+      "Finds submaps that see the same place by the shape of their free space, "
       "without a pose prior; verifies the matches; keeps a mutually consistent "
       "set; adds it to the pose graph as inter-submap constraints; optimises; "
       "and writes a map that Cartographer's own tools load. Everything else in "
