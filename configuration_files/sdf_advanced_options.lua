@@ -214,7 +214,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         max_num_sought_pairs = 1000,
         -- Stored pairs that a query looks at, the rarest first: bounds its time
         -- in large maps.
-        max_num_visited_pairs = 300000,
+        max_num_visited_pairs = 100000,
         -- [m], [rad] Bins of the accumulator of poses.
         pose_bins = {
           distance_meters = 0.75,

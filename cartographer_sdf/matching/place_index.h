@@ -38,7 +38,7 @@ struct RetrievalOptions {
   int max_num_sought_pairs = 1000;
   // A query looks at so many stored pairs, those under the rarest keys: this
   // bounds its time, however large the index.
-  int max_num_visited_pairs = 300000;
+  int max_num_visited_pairs = 100000;
   // Pairs that vote for poses in one bin agree.
   PoseBinOptions pose_bins = {0.75, 0.2};
   // Poses returned of each candidate.

@@ -40,7 +40,7 @@ TEST(LinePlotTest, PutsPointsWhereTheyBelong) {
                          HasSubstr("precision &lt; recall"),
                          HasSubstr("precision &amp; more"), HasSubstr(">0.2<"),
                          HasSubstr(">0.8<")));
-  EXPECT_THAT(svg, Not(HasSubstr("http")));
+  EXPECT_THAT(svg, Not(HasSubstr("://")));
 }
 
 TEST(LinePlotTest, SurvivesDegenerateData) {

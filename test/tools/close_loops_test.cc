@@ -98,7 +98,7 @@ TEST_F(CloseLoopsTest, StraightensASimulatedMap) {
   const std::string page = directory_->Read("report/index.html");
   EXPECT_THAT(
       page, AllOf(HasSubstr("open.pbstream"), HasSubstr("Before"),
-                  HasSubstr("SDF_GLOBAL_CONSTRAINTS"), Not(HasSubstr("http"))));
+                  HasSubstr("SDF_GLOBAL_CONSTRAINTS"), Not(HasSubstr("://"))));
 }
 
 TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
