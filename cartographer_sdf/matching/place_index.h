@@ -55,7 +55,8 @@ struct RetrievalOptions {
 struct RetrievalCandidate {
   SubmapId id;
   // Weight of the best pose over the geometric mean of both numbers of pairs:
-  // comparable between queries, and nearly so between maps.
+  // comparable between queries; grows with the logarithm of the number of
+  // submaps in the index.
   double score;
   // Poses of the query in the candidate, best first.
   std::vector<Rigid2> T_reference_query;
