@@ -154,18 +154,18 @@ SDF_GLOBAL_CONSTRAINTS = {
             -- scripts/learn_score.py on Intel, ACES, Killian Court, Willow
             -- Garage and two simulated offices.
             score_weights = {
-              -- Of the fraction of wall points in the other's free space.
-              contradiction_ratio = -99.5,
+              -- Of ln(0.02 + fraction of wall points in the other's free space).
+              log_contradiction_ratio = -2.1,
               -- Of ln(0.05 + fraction of the smaller observed area that both
               -- observed).
-              log_overlap = 2.32,
+              log_overlap = 1.69,
               -- Of the number of tiles of 2 m whose walls agree.
-              wall_evidence = 0.8,
+              wall_evidence = 1.43,
               -- Of how evenly the walls face all directions.
-              sqrt_scatter_eigenvalue = 10.,
+              sqrt_scatter_eigenvalue = 14.7,
               -- Of the lead over the best distinct pose.
-              margin = 1.04,
-              bias = -4.67,
+              margin = 0.69,
+              bias = -15.,
             },
             -- [m^2] Least area observed by both.
             min_overlap_area = 10.,
@@ -231,6 +231,18 @@ SDF_GLOBAL_CONSTRAINTS = {
         min_num_candidates = 10,
         max_num_candidates = 20,
       },
+      -- Where walls show that local SLAM slipped, what it says of submaps on
+      -- either side of the slip is not used.
+      links = {
+        -- Indices between the submaps of a link; those two apart share no
+        -- scans.
+        index_step = 2,
+        -- A link is broken where more of its walls stand in free space.
+        -- Smaller: trusts local SLAM less, and so has fewer neighbours.
+        max_contradiction_ratio = 0.05,
+        -- [m^2] Links with a smaller commonly observed area say nothing.
+        min_overlap_area = 10.,
+      },
       -- Neighbourhood verification: the neighbours of both submaps, where local
       -- SLAM places them, support or contradict a match.
       neighbourhood = {
@@ -244,6 +256,11 @@ SDF_GLOBAL_CONSTRAINTS = {
         min_overlap_area = 15.,
         -- Wall points of each neighbour. Larger: more precise, slower.
         num_points = 600,
+        -- [m], [rad] A neighbouring pair's own match confirms the prediction if
+        -- it lies this near to it. Larger: bears more drift, and lets matches
+        -- that are a little off pass for right.
+        max_prediction_error_meters = 1.,
+        max_prediction_rotation_error = 0.15,
         -- [m] Prior: a match is scored as if its neighbourhood had shown this
         -- much additional wall ...
         prior_wall_length_meters = 50.,
@@ -263,15 +280,37 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- --neighbours on the same maps as score_weights.
         weights = {
           -- Of the pair's own score.
-          pair_score = 0.515,
+          pair_score = 0.78,
           -- Of the logarithm of the fraction of the neighbours' wall that
           -- contradicts.
-          log_contradiction = -5.57,
-          bias = -0.633,
+          log_contradiction = -1.77,
+          -- Of the logarithm of the odds at which neighbouring pairs, matched by
+          -- themselves, lie where the match predicts them.
+          log_confirmation = 2.29,
+          bias = 0.,
         },
         -- Most that the neighbourhood may raise a pair's own score. Larger:
         -- accepts more matches whose own walls hardly agree.
-        max_gain = 3.,
+        max_gain = 6.,
+      },
+      -- A submap that matches two others, which local SLAM puts far apart, is in
+      -- one place at most: where both are about as likely, both are ambiguous.
+      -- Applied where neighbourhoods are verified.
+      rivals = {
+        -- Least lead over each match that excludes it; log-odds. Larger: more is
+        -- refused in buildings of equal rooms.
+        min_lead = 1.5,
+        -- A match loses this fraction of ln(1 + odds) of its best rival.
+        rival_weight = 0.5,
+        -- [m], [rad] Matches exclude each other if the poses that they give to
+        -- the submap differ by more than this ...
+        min_distance_meters = 1.5,
+        min_rotation = 0.3,
+        -- ... and by more than local SLAM may have drifted on the way between
+        -- the other two: as a fraction of the way, and [rad / sqrt(m)]. Larger:
+        -- tolerates worse odometry, and more equal rooms.
+        max_drift_per_meter = 0.04,
+        max_rotation_drift_per_sqrt_meter = 0.04,
       },
     },
     -- From matches to an optimised pose graph.
@@ -364,6 +403,10 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- A submap contributes its best match, and this fraction of its other
       -- matches. Larger: less must be seen, more look-alikes are accepted.
       further_match_weight = 0.,
+      -- Two submaps that the answer makes overlap contradict it if more of their
+      -- walls stand in the other's free space. Larger: tolerates more moved
+      -- furniture.
+      max_contradiction_ratio = 0.2,
       -- Largest fraction of the submaps that may contradict the answer. Larger:
       -- tolerates more change since the map was made.
       max_contradicting_fraction = 0.3,

@@ -21,13 +21,13 @@ local loop_closing = SDF_GLOBAL_CONSTRAINTS.loop_closing
 -- being right.
 local judgement = loop_closing.recognition.match.verification.judgement
 -- Least score. Larger: fewer wrong matches, fewer matches.
-judgement.min_score = 3.
+judgement.min_score = 4.
 -- Least lead over the best other pose of the pair; below it the pair is
 -- ambiguous. Larger: more pairs are refused where rooms look alike.
 judgement.min_margin = 0.7
 -- Largest fraction of wall points in the other submap's free space. Larger:
 -- tolerates more moved furniture, and more wrong matches.
-judgement.max_contradiction_ratio = 0.1
+judgement.max_contradiction_ratio = 0.25
 
 -- Which pairs of submaps are compared.
 local recognition = loop_closing.recognition

@@ -20,12 +20,12 @@ Maps come from --data (those of the table below that are there), from --sets
 query_truth, the last three empty where a map is matched with itself; paths are
 relative to the file), and from simulated buildings.
 
-Matches are made of each pair alone and with all thresholds of the score off, so
-that the terms do not depend on the weights in force.
+Matches are made as shipped, among the pairs that the index and neighbours
+propose, so that the terms are those that the weights will meet.
 
 With --neighbours it learns the weights of the score in the neighbourhood
-(neighbourhood.weights) instead, whose terms build on the pair's own score:
-matches are made as shipped, and so with the weights in force.
+(neighbourhood.weights) instead, whose terms build on the pair's own score in
+force: learn that one first.
 """
 
 import argparse
@@ -49,24 +49,56 @@ from measuring import (DATA_DIR, PROGRAM, SOURCE_DIR, Failure,  # noqa: E402
                        check_program)
 
 # building, map, truth, and the same of a query map.
+def within(building, name, map_name=""):
+    return (building, f"{map_name or name}.pbstream", f"{name}.truth.csv")
+
+
+def between(building, first, second):
+    return (building, f"{first}.pbstream", f"{first}.truth.csv", building,
+            f"{second}.pbstream", f"{second}.truth.csv")
+
+
+def strangers(building, name, other_building, other):
+    return (building, f"{name}.pbstream", "", other_building,
+            f"{other}.pbstream", "")
+
+
+# Without maps of equal rooms: where nothing in two submaps tells them apart,
+# there is nothing to learn (recognition/rival_matches.h).
 REAL_SETS = [
-    ("intel", "intel_open_loop.pbstream", "intel.truth.csv"),
-    ("aces", "aces_open_loop.pbstream", "aces.truth.csv"),
-    ("killian", "mit_killian_open_loop.pbstream", "mit_killian.truth.csv"),
-    ("willow", "willow_1.pbstream", "willow_1.truth.csv"),
-    ("willow", "willow_2.pbstream", "willow_2.truth.csv"),
-    ("willow", "willow_1.pbstream", "willow_1.truth.csv",
-     "willow", "willow_2.pbstream", "willow_2.truth.csv"),
-    ("intel", "intel_open_loop.pbstream", "",
-     "aces", "aces_open_loop.pbstream", ""),
-    ("intel", "intel_open_loop.pbstream", "", "willow", "willow_1.pbstream", ""),
-    ("aces", "aces_open_loop.pbstream", "", "willow", "willow_2.pbstream", ""),
-    ("killian", "mit_killian_open_loop.pbstream", "",
-     "willow", "willow_1.pbstream", ""),
-    ("killian", "mit_killian_open_loop.pbstream", "",
-     "intel", "intel_open_loop.pbstream", ""),
-    ("killian", "mit_killian_open_loop.pbstream", "",
-     "aces", "aces_open_loop.pbstream", ""),
+    within("intel", "intel", "intel_open_loop"),
+    within("aces", "aces", "aces_open_loop"),
+    within("killian", "mit_killian", "mit_killian_open_loop"),
+    *(within(building, name) for building, name in (
+        ("willow", "willow_1"), ("willow", "willow_2"), ("fr079", "fr079"),
+        ("belgioioso", "belgioioso"), ("fhw", "fhw_1"), ("fhw", "fhw_2"),
+        ("orebro", "orebro"), ("campus", "freiburg_campus"),
+        ("tsc", "tsc_2016"), ("tsc", "tsc_2017"), ("labc", "labc_bare1"),
+        ("labc", "labc_furn"), ("labc", "labc_d3a"),
+        ("officeb", "officeb_bare"), ("floors", "field/floor_4"),
+        ("floors", "field/floor_6"))),
+    between("willow", "willow_1", "willow_2"),
+    between("fhw", "fhw_1", "fhw_2"),
+    between("tsc", "tsc_2016", "tsc_2017"),
+    between("labc", "labc_bare1", "labc_furn"),
+    between("labc", "labc_bare1", "labc_d3a"),
+    between("labc", "labc_furn", "labc_d3a"),
+    between("floors", "field/floor_4", "field/floor_6"),
+    strangers("intel", "intel_open_loop", "aces", "aces_open_loop"),
+    strangers("intel", "intel_open_loop", "willow", "willow_1"),
+    strangers("intel", "intel_open_loop", "fr079", "fr079"),
+    strangers("aces", "aces_open_loop", "willow", "willow_2"),
+    strangers("aces", "aces_open_loop", "bare_corner", "field/bare_corner"),
+    strangers("aces", "aces_open_loop", "floors", "field/floor_4"),
+    strangers("killian", "mit_killian_open_loop", "willow", "willow_1"),
+    strangers("killian", "mit_killian_open_loop", "intel", "intel_open_loop"),
+    strangers("killian", "mit_killian_open_loop", "aces", "aces_open_loop"),
+    strangers("killian", "mit_killian_open_loop", "officeb", "officeb_bare"),
+    strangers("killian", "mit_killian_open_loop", "belgioioso", "belgioioso"),
+    strangers("fr079", "fr079", "orebro", "orebro"),
+    strangers("tsc", "tsc_2016", "labc", "labc_bare1"),
+    strangers("officeb", "officeb_bare", "labc", "labc_furn"),
+    strangers("belgioioso", "belgioioso", "fhw", "fhw_1"),
 ]
 # plan_seed, width, height [m], length of the drive [m].
 SIMULATED = [(1, 40, 30, 400), (2, 60, 40, 700), (3, 35, 35, 400),
@@ -332,16 +364,7 @@ def read_set_list(path):
 
 # --- The program. -------------------------------------------------------------
 
-# All that depends on the weights in force.
 CONFIGURATION = """include "sdf_global_constraints.lua"
-local recognition = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition
-recognition.match.verification.judgement.min_score = -1e9
-return SDF_GLOBAL_CONSTRAINTS
-"""
-
-
-# With neighbours, nothing is switched off.
-NEIGHBOURS_CONFIGURATION = """include "sdf_global_constraints.lua"
 return SDF_GLOBAL_CONSTRAINTS
 """
 # Few wrong answers lie near right ones: a weaker penalty follows single ones.
@@ -358,8 +381,6 @@ class Workshop:
         self.work = work
         self.threads = threads
         self.neighbours = neighbours
-        configuration = (NEIGHBOURS_CONFIGURATION if neighbours
-                         else CONFIGURATION)
         check_program(program)
         options = {
             name: (SOURCE_DIR / "configuration_files" / name).read_bytes()
@@ -368,7 +389,7 @@ class Workshop:
         digest = hashlib.sha256(program.read_bytes())
         for content in options.values():
             digest.update(content)
-        digest.update(configuration.encode())
+        digest.update(CONFIGURATION.encode())
         self.folder = (work / digest.hexdigest()[:12]).resolve()
         self.folder.mkdir(parents=True, exist_ok=True)
         self.program = self.folder / "cartographer_sdf"
@@ -376,7 +397,7 @@ class Workshop:
             shutil.copy2(program, self.program)
         for name, content in options.items():
             (self.folder / name).write_bytes(content)
-        (self.folder / "learn.lua").write_text(configuration,
+        (self.folder / "learn.lua").write_text(CONFIGURATION,
                                                encoding="utf-8")
 
     def run(self, *arguments):
@@ -414,14 +435,15 @@ class Workshop:
         base = self.folder / stamp.hexdigest()[:16]
         terms, labels, numbers, matches = (
             pathlib.Path(f"{base}.{kind}.csv")
-            for kind in ("terms", "labels", "numbers", "matches"))
+            for kind in ("neighbour_terms" if self.neighbours else "terms",
+                         "labels", "numbers", "matches"))
         between = ["--query", query] if query else []
         if not (terms.exists() and matches.exists()):
             tell(f"match {name}")
-            self.run("match", "--input", map_path, *between, "--all_pairs",
+            self.run("match", "--input", map_path, *between,
                      "--output", matches,
-                     *(["--neighbour_terms"] if self.neighbours
-                       else ["--alone", "--terms"]), terms, "--threads", self.threads,
+                     "--neighbour_terms" if self.neighbours else "--terms",
+                     terms, "--threads", self.threads,
                      "--configuration_directory", self.folder,
                      "--configuration_basename", "learn.lua")
         num_positives = 0

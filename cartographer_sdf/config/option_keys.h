@@ -110,7 +110,7 @@ inline void VisitOptions(OptionVisitor& visit, AgreementOptions& options) {
 }
 
 inline void VisitOptions(OptionVisitor& visit, ScoreWeights& options) {
-  visit("contradiction_ratio", options.contradiction_ratio);
+  visit("log_contradiction_ratio", options.log_contradiction_ratio);
   visit("log_overlap", options.log_overlap);
   visit("wall_evidence", options.wall_evidence);
   visit("sqrt_scatter_eigenvalue", options.sqrt_scatter_eigenvalue);
@@ -229,9 +229,16 @@ inline void VisitOptions(OptionVisitor& visit,
   visit("max_num_rounds", options.max_num_rounds);
 }
 
+inline void VisitOptions(OptionVisitor& visit, TrajectoryLinkOptions& options) {
+  visit("index_step", options.index_step);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
+  visit("min_overlap_area", options.min_overlap_area);
+}
+
 inline void VisitOptions(OptionVisitor& visit, NeighbourhoodWeights& weights) {
   visit("pair_score", weights.pair_score);
   visit("log_contradiction", weights.log_contradiction);
+  visit("log_confirmation", weights.log_confirmation);
   visit("bias", weights.bias);
 }
 
@@ -240,6 +247,8 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("index_step", options.index_step);
   visit("min_overlap_area", options.min_overlap_area);
   visit("num_points", options.num_points);
+  visit("max_prediction_error_meters", options.max_prediction_error_meters);
+  visit("max_prediction_rotation_error", options.max_prediction_rotation_error);
   visit("prior_wall_length_meters", options.prior_wall_length_meters);
   visit("prior_contradiction_ratio", options.prior_contradiction_ratio);
   visit("min_pair_score", options.min_pair_score);
@@ -249,13 +258,25 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("max_gain", options.max_gain);
 }
 
+inline void VisitOptions(OptionVisitor& visit, RivalMatchOptions& options) {
+  visit("min_lead", options.min_lead);
+  visit("rival_weight", options.rival_weight);
+  visit("min_distance_meters", options.min_distance_meters);
+  visit("min_rotation", options.min_rotation);
+  visit("max_drift_per_meter", options.max_drift_per_meter);
+  visit("max_rotation_drift_per_sqrt_meter",
+        options.max_rotation_drift_per_sqrt_meter);
+}
+
 inline void VisitOptions(OptionVisitor& visit, RecognitionOptions& options) {
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
   visit("use_retrieval", options.use_retrieval);
   visit("retrieval", options.retrieval);
   visit("verify_neighbourhoods", options.verify_neighbourhoods);
+  visit("links", options.links);
   visit("neighbourhood", options.neighbourhood);
+  visit("rivals", options.rivals);
 }
 
 inline void VisitOptions(OptionVisitor& visit, ClosingOptions& options) {
@@ -297,6 +318,7 @@ inline void VisitOptions(OptionVisitor& visit, PlacementOptions& options) {
   visit("further_match_weight", options.further_match_weight);
   visit("min_score", options.min_score);
   visit("min_lead", options.min_lead);
+  visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_contradicting_fraction", options.max_contradicting_fraction);
   visit("same_distance_meters", options.same_distance_meters);
   visit("same_rotation", options.same_rotation);

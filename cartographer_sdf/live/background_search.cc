@@ -67,9 +67,9 @@ PlaceRecognizer::Recognition BackgroundSearch::Recognize(
       });
   if (options_.verify_neighbourhoods) {
     const TrajectoryPlaces map{&places(), &odometry};
+    const NeighbourhoodMaps maps{map, map, options_.min_index_gap};
     for (Match& match : recognition.matches) {
-      VerifyNeighbourhood(options_.neighbourhood, options_.match, map, map,
-                          options_.min_index_gap, &match);
+      VerifyNeighbourhood(options_.neighbourhood, options_.match, maps, &match);
     }
   }
   return recognition;

@@ -118,10 +118,8 @@ class Confirmer {
         DriftSigma(task_.consistency, pair->way) > kMaxContradictionSigma) {
       return;
     }
-    // Twice the limit of a single match: furniture moves, people walk.
     pair->contradicting = FindContradiction(
-        task_.match.verification,
-        2. * task_.match.verification.judgement.max_contradiction_ratio,
+        task_.match.verification, task_.placement.max_contradiction_ratio,
         *pair->reference, *pair->query, pair->T_reference_query);
   }
 

@@ -233,7 +233,8 @@ class Localizer {
                              "of %.0f %% of the places do not match",
                              where, 100. * fraction));
     } else if (rival != nullptr &&
-               best.score - rival->score < options.min_lead) {
+               (rival->score >= options.min_score ||
+                best.score - rival->score < options.min_lead)) {
       Refuse(LocalizationVerdict::kAmbiguous,
              absl::StrFormat(
                  "ambiguous between %s (score %.1f) and %s (%.1f)", where,

@@ -195,6 +195,9 @@ std::string Validate(const PlacementOptions& options) {
     return "further_match_weight must lie between 0 and 1";
   }
   if (!(options.min_lead >= 0.)) return "min_lead must not be negative";
+  if (!(options.max_contradiction_ratio >= 0.)) {
+    return "max_contradiction_ratio must not be negative";
+  }
   if (!(options.max_contradicting_fraction >= 0. &&
         options.max_contradicting_fraction <= 1.)) {
     return "max_contradicting_fraction must lie between 0 and 1";

@@ -38,10 +38,14 @@ struct PlacementOptions {
   // redundant, but a query of a single place has no other evidence.
   double further_match_weight = 0.;
   // Least total score of the places that support a placement; log-odds. Above
-  // the scores that perceptual aliasing in other buildings reaches.
+  // the scores that perceptual aliasing in other buildings reaches. A rival
+  // that reaches it would be certain by itself, and makes any other ambiguous.
   double min_score = 6.5;
   // Least lead over the best placement that it excludes; log-odds.
   double min_lead = 4.;
+  // Two submaps that the placement makes overlap contradict it if more of their
+  // walls (mean of both directions) stand in the other's free space.
+  double max_contradiction_ratio = 0.2;
   // Largest fraction of the query's places in the observed area of the map that
   // may contradict the placement.
   double max_contradicting_fraction = 0.3;

@@ -54,6 +54,10 @@ struct NeighbourhoodEvidence {
   int num_pairs = 0;
   double wall_length = 0.;           // within the other's observed area [m]
   double contradicting_length = 0.;  // part in the other's free space [m]
+  // Pairs that were matched by themselves, where predicted ...
+  int num_confirming = 0;
+  // ... and elsewhere: the sum of their probabilities of being right there.
+  double num_refuting = 0.;
 };
 
 // A pose of a pair of submaps, accepted or not.

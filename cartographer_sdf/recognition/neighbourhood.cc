@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
+#include "cartographer_sdf/geometry/distinct_poses.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -23,11 +25,14 @@ struct NeighbourhoodTerm {
 };
 constexpr std::array<NeighbourhoodTerm, kNumNeighbourhoodTerms> kTerms = {
     {{"pair_score", &NeighbourhoodWeights::pair_score},
-     {"log_contradiction", &NeighbourhoodWeights::log_contradiction}}};
+     {"log_contradiction", &NeighbourhoodWeights::log_contradiction},
+     {"log_confirmation", &NeighbourhoodWeights::log_confirmation}}};
 
-// Returns the submap itself and its existing neighbours.
+// Returns the submap itself and its existing neighbours, without those that a
+// broken link separates from it.
 std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
                                  const TrajectoryPlaces& map,
+                                 const TrajectoryLinks* const links,
                                  const SubmapId& id) {
   std::vector<SubmapId> neighbours;
   for (int step = -options.num_steps; step <= options.num_steps; ++step) {
@@ -36,7 +41,11 @@ std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
         static_cast<int64_t>(id.index) + step * options.index_step;
     if (index < 0 || index > std::numeric_limits<int>::max()) continue;
     const SubmapId neighbour{id.trajectory, static_cast<int>(index)};
-    if (map.places->count(neighbour) > 0) neighbours.push_back(neighbour);
+    if (map.places->count(neighbour) == 0 ||
+        (links != nullptr && links->IsBrokenBetween(id, neighbour))) {
+      continue;
+    }
+    neighbours.push_back(neighbour);
   }
   return neighbours;
 }
@@ -47,46 +56,95 @@ Rigid2 RelativePose(const TrajectoryPlaces& map, const SubmapId& a,
          map.odometry->at(b).T_local_submap;
 }
 
-// Adds the wall of `points` in metres: each sampled point also stands for those
-// not sampled.
-void Add(const AgreementOptions& options, const SurfaceModel& model,
-         const SurfaceModel& points, const Rigid2& T_model_points,
-         NeighbourhoodEvidence* const evidence) {
-  const DirectedAgreement agreement =
-      MeasureAgreement(options, model, points.walls, T_model_points);
-  const double num_sampled = static_cast<double>(std::min(
-      points.walls.size(), static_cast<size_t>(options.max_num_points)));
-  const double stands_for = static_cast<double>(points.walls.size()) /
-                            num_sampled * points.geometry.resolution;
-  evidence->wall_length += stands_for * agreement.num_points;
-  evidence->contradicting_length += stands_for * agreement.contradictions;
+// Returns the match of a pair by itself.
+std::optional<PairPose> OwnMatch(const NeighbourhoodMaps& maps,
+                                 const SubmapId& reference,
+                                 const SubmapId& query) {
+  if (maps.own_matches == nullptr) return std::nullopt;
+  const bool is_swapped = maps.min_index_gap && query < reference;
+  const auto found =
+      maps.own_matches->find(is_swapped ? std::make_pair(query, reference)
+                                        : std::make_pair(reference, query));
+  if (found == maps.own_matches->end()) return std::nullopt;
+  PairPose match = found->second;
+  if (is_swapped) match.T_reference_query = match.T_reference_query.Inverse();
+  return match;
 }
 
-// Registers a pair of neighbours from its predicted pose and adds its evidence.
-// Returns nullopt if registration fails, or the common observed area is too
-// small before or after it.
-std::optional<Rigid2> AddPair(const NeighbourhoodOptions& options,
-                              const VerificationOptions& verification,
-                              const SurfaceModel& reference,
-                              const SurfaceModel& query,
-                              const Rigid2& predicted,
-                              NeighbourhoodEvidence* const evidence) {
-  if (OverlapArea(reference, query, predicted) < options.min_overlap_area) {
-    return std::nullopt;
-  }
-  const std::optional<Rigid2> registered =
-      RegisterSubmaps(verification.registration, reference, query, predicted);
-  if (!registered ||
-      OverlapArea(reference, query, *registered) < options.min_overlap_area) {
-    return std::nullopt;
-  }
-  AgreementOptions agreement = verification.agreement;
-  agreement.max_num_points = options.num_points;
-  ++evidence->num_pairs;
-  Add(agreement, reference, query, *registered, evidence);
-  Add(agreement, query, reference, registered->Inverse(), evidence);
-  return registered;
+double Probability(const double log_odds) {
+  return 1. / (1. + std::exp(-log_odds));
 }
+
+// Measures one match's neighbouring pairs.
+class NeighbourhoodMeasurer {
+ public:
+  NeighbourhoodMeasurer(const NeighbourhoodOptions& options,
+                        const VerificationOptions& verification,
+                        const NeighbourhoodMaps& maps)
+      : options_(options), verification_(verification), maps_(maps) {
+    agreement_ = verification.agreement;
+    agreement_.max_num_points = options.num_points;
+  }
+
+  void Add(const SubmapId& reference, const SubmapId& query,
+           const Rigid2& predicted) {
+    const SurfaceModel& i = maps_.references.places->at(reference).surface;
+    const SurfaceModel& j = maps_.queries.places->at(query).surface;
+    if (!OverlapsEnough(i, j, predicted)) return;
+    const std::optional<PairPose> match = OwnMatch(maps_, reference, query);
+    const bool is_confirmed =
+        match &&
+        AreNear(match->T_reference_query, predicted, ObservedCentroid(j),
+                {options_.max_prediction_error_meters,
+                 options_.max_prediction_rotation_error});
+    NeighbourhoodEvidence& evidence = neighbourhood_.evidence;
+    std::optional<Rigid2> pose;
+    if (is_confirmed) {
+      ++evidence.num_confirming;
+      pose = match->T_reference_query;
+    } else {
+      if (match) evidence.num_refuting += Probability(match->score);
+      pose = RegisterSubmaps(verification_.registration, i, j, predicted);
+    }
+    if (!pose || !OverlapsEnough(i, j, *pose)) return;
+    ++evidence.num_pairs;
+    AddWall(i, j, *pose);
+    AddWall(j, i, pose->Inverse());
+    if (!is_confirmed) {
+      neighbourhood_.proposals.push_back({reference, query, *pose});
+    }
+  }
+
+  [[nodiscard]] Neighbourhood Take() { return std::move(neighbourhood_); }
+
+ private:
+  [[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
+                                    const SurfaceModel& query,
+                                    const Rigid2& pose) const {
+    return OverlapArea(reference, query, pose) >= options_.min_overlap_area;
+  }
+
+  // Adds the wall of `points` in metres: each sampled point also stands for
+  // those not sampled.
+  void AddWall(const SurfaceModel& model, const SurfaceModel& points,
+               const Rigid2& T_model_points) {
+    const DirectedAgreement agreement =
+        MeasureAgreement(agreement_, model, points.walls, T_model_points);
+    const double num_sampled = static_cast<double>(std::min(
+        points.walls.size(), static_cast<size_t>(agreement_.max_num_points)));
+    const double stands_for = static_cast<double>(points.walls.size()) /
+                              num_sampled * points.geometry.resolution;
+    NeighbourhoodEvidence& evidence = neighbourhood_.evidence;
+    evidence.wall_length += stands_for * agreement.num_points;
+    evidence.contradicting_length += stands_for * agreement.contradictions;
+  }
+
+  const NeighbourhoodOptions& options_;
+  const VerificationOptions& verification_;
+  const NeighbourhoodMaps& maps_;
+  AgreementOptions agreement_;
+  Neighbourhood neighbourhood_;
+};
 
 }  // namespace
 
@@ -116,6 +174,11 @@ std::string Validate(const NeighbourhoodOptions& options) {
     return "min_overlap_area must not be negative, prior_wall_length_meters "
            "and prior_contradiction_ratio must be positive";
   }
+  if (!(options.max_prediction_error_meters > 0. &&
+        options.max_prediction_rotation_error > 0.)) {
+    return "max_prediction_error_meters and max_prediction_rotation_error must "
+           "be positive";
+  }
   if (!(options.max_gain >= 0.)) return "max_gain must not be negative";
   return Validate(options.weights);
 }
@@ -130,6 +193,12 @@ double LogContradiction(const NeighbourhoodOptions& options,
   return std::log((kNoiseRatio + ratio) / (kNoiseRatio + prior_ratio));
 }
 
+double LogConfirmation(const NeighbourhoodEvidence& evidence) {
+  // Half a match for and half a match against keep it finite.
+  return std::log((evidence.num_confirming + 0.5) /
+                  (evidence.num_refuting + 0.5));
+}
+
 std::array<const char*, kNumNeighbourhoodTerms> NeighbourhoodTermNames() {
   std::array<const char*, kNumNeighbourhoodTerms> names = {};
   for (int k = 0; k < kNumNeighbourhoodTerms; ++k) names[k] = kTerms[k].name;
@@ -139,7 +208,8 @@ std::array<const char*, kNumNeighbourhoodTerms> NeighbourhoodTermNames() {
 std::array<double, kNumNeighbourhoodTerms> NeighbourhoodTerms(
     const NeighbourhoodOptions& options, const double pair_score,
     const NeighbourhoodEvidence& evidence) {
-  return {pair_score, LogContradiction(options, evidence)};
+  return {pair_score, LogContradiction(options, evidence),
+          LogConfirmation(evidence)};
 }
 
 double NeighbourhoodScore(const NeighbourhoodOptions& options,
@@ -156,29 +226,24 @@ double NeighbourhoodScore(const NeighbourhoodOptions& options,
 
 Neighbourhood MeasureNeighbourhood(const NeighbourhoodOptions& options,
                                    const VerificationOptions& verification,
-                                   const TrajectoryPlaces& references,
-                                   const TrajectoryPlaces& queries,
-                                   const std::optional<int> min_index_gap,
+                                   const NeighbourhoodMaps& maps,
                                    const PairPose& pair) {
   CHECK_EQ(Validate(options), "");
-  Neighbourhood neighbourhood;
-  for (const SubmapId& i : Neighbours(options, references, pair.reference)) {
-    const SurfaceModel& i_surface = references.places->at(i).surface;
-    const Rigid2 T_i_query =
-        RelativePose(references, i, pair.reference) * pair.T_reference_query;
-    for (const SubmapId& j : Neighbours(options, queries, pair.query)) {
+  NeighbourhoodMeasurer measurer(options, verification, maps);
+  for (const SubmapId& i : Neighbours(options, maps.references,
+                                      maps.reference_links, pair.reference)) {
+    const Rigid2 T_i_query = RelativePose(maps.references, i, pair.reference) *
+                             pair.T_reference_query;
+    for (const SubmapId& j :
+         Neighbours(options, maps.queries, maps.query_links, pair.query)) {
       if ((i == pair.reference && j == pair.query) ||
-          (min_index_gap && ShareScans(i, j, *min_index_gap))) {
+          (maps.min_index_gap && ShareScans(i, j, *maps.min_index_gap))) {
         continue;
       }
-      const std::optional<Rigid2> T_i_j = AddPair(
-          options, verification, i_surface, queries.places->at(j).surface,
-          T_i_query * RelativePose(queries, pair.query, j),
-          &neighbourhood.evidence);
-      if (T_i_j) neighbourhood.proposals.push_back({i, j, *T_i_j});
+      measurer.Add(i, j, T_i_query * RelativePose(maps.queries, pair.query, j));
     }
   }
-  return neighbourhood;
+  return measurer.Take();
 }
 
 }  // namespace cartographer_sdf

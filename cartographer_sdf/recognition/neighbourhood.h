@@ -8,10 +8,15 @@
 // of the reference and a neighbour of the query. Once registered from that
 // pose, their walls and free space agree or contradict each other.
 //
+// Many of these pairs were also matched by themselves, from features alone.
+// Where such a match lies at the predicted pose, two searches that know nothing
+// of each other agree: the strongest evidence there is, and one that moved
+// furniture leaves alone.
+//
 // A prediction is also a hypothesis: it finds poses that a pair's own features
 // did not propose. Poses of the optimised map are not used, and a match is
 // never compared with odometry itself, as local SLAM may have slipped in
-// between.
+// between; neighbours beyond a broken link (trajectory_links.h) are left out.
 
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_H_
@@ -20,11 +25,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cartographer_sdf/grid/pair_pose.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/trajectory_links.h"
 
 namespace cartographer_sdf {
 
@@ -33,9 +40,10 @@ namespace cartographer_sdf {
 // NeighbourhoodOptions::max_gain. Learned by logistic regression; see
 // scripts/learn_score.py.
 struct NeighbourhoodWeights {
-  double pair_score = 0.515;
-  double log_contradiction = -5.57;
-  double bias = -0.633;
+  double pair_score = 0.78;
+  double log_contradiction = -1.77;
+  double log_confirmation = 2.29;
+  double bias = 0.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodWeights& weights);
 
@@ -49,6 +57,11 @@ struct NeighbourhoodOptions {
   double min_overlap_area = 15.;
   // Largest number of wall points used of each neighbour.
   int num_points = 600;
+  // The match of a neighbouring pair confirms the prediction if it is this near
+  // to it, at the middle of its query [m], [rad]. Then it is also where the
+  // walls of the pair are compared; elsewhere, the prediction is registered.
+  double max_prediction_error_meters = 1.;
+  double max_prediction_rotation_error = 0.15;
   // Prior: a match is scored as if its neighbourhood had shown this much more
   // wall [m] ...
   double prior_wall_length_meters = 50.;
@@ -65,7 +78,7 @@ struct NeighbourhoodOptions {
   NeighbourhoodWeights weights;
   // The neighbourhood raises the score of a pair by at most this, log-odds: it
   // cannot make up for walls that disagree.
-  double max_gain = 3.;
+  double max_gain = 6.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodOptions& options);
 
@@ -74,9 +87,13 @@ struct NeighbourhoodOptions {
 [[nodiscard]] double LogContradiction(const NeighbourhoodOptions& options,
                                       const NeighbourhoodEvidence& evidence);
 
+// Returns the logarithm of the odds at which the neighbouring pairs' own
+// matches confirm the prediction; zero if none has a match.
+[[nodiscard]] double LogConfirmation(const NeighbourhoodEvidence& evidence);
+
 // The terms of NeighbourhoodWeights without the bias, in their order, and their
 // names.
-constexpr int kNumNeighbourhoodTerms = 2;
+constexpr int kNumNeighbourhoodTerms = 3;
 [[nodiscard]] std::array<const char*, kNumNeighbourhoodTerms>
 NeighbourhoodTermNames();
 [[nodiscard]] std::array<double, kNumNeighbourhoodTerms> NeighbourhoodTerms(
@@ -88,18 +105,34 @@ NeighbourhoodTermNames();
 
 struct Neighbourhood {
   NeighbourhoodEvidence evidence;
-  // Registered poses of the neighbouring pairs.
+  // Registered poses of the neighbouring pairs whose own matches do not confirm
+  // the prediction.
   std::vector<PairPose> proposals;
 };
 
-// Measures the neighbourhood of the match `pair`, between two maps or within
-// one. Skips pairs of neighbours that share scans (see ShareScans; between
-// different maps, `min_index_gap` is empty and none do). Takes as long as
-// verifying about ten poses.
+// Pairs that were matched by themselves, with the scores of each pair alone, by
+// (reference, query).
+using OwnMatches = std::map<std::pair<SubmapId, SubmapId>, PairPose>;
+
+// Where neighbours are looked for: between two maps, or within one. Nothing is
+// owned.
+struct NeighbourhoodMaps {
+  TrajectoryPlaces references;
+  TrajectoryPlaces queries;
+  // Within one map, pairs that share scans are skipped (see ShareScans), and
+  // the lower id of a matched pair is its reference. Empty between two maps.
+  std::optional<int> min_index_gap;
+  // Null if unknown.
+  const TrajectoryLinks* reference_links = nullptr;
+  const TrajectoryLinks* query_links = nullptr;
+  const OwnMatches* own_matches = nullptr;
+};
+
+// Measures the neighbourhood of the match `pair`. Takes as long as verifying
+// about ten poses.
 [[nodiscard]] Neighbourhood MeasureNeighbourhood(
     const NeighbourhoodOptions& options,
-    const VerificationOptions& verification, const TrajectoryPlaces& references,
-    const TrajectoryPlaces& queries, std::optional<int> min_index_gap,
+    const VerificationOptions& verification, const NeighbourhoodMaps& maps,
     const PairPose& pair);
 
 }  // namespace cartographer_sdf

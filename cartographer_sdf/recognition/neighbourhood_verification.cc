@@ -45,14 +45,8 @@ class NeighbourhoodVerifier {
  public:
   NeighbourhoodVerifier(const NeighbourhoodOptions& options,
                         const MatchOptions& match_options,
-                        const TrajectoryPlaces& references,
-                        const TrajectoryPlaces& queries,
-                        const std::optional<int> min_index_gap)
-      : options_(options),
-        match_options_(match_options),
-        references_(references),
-        queries_(queries),
-        min_index_gap_(min_index_gap) {
+                        const NeighbourhoodMaps& maps)
+      : options_(options), match_options_(match_options), maps_(maps) {
     CHECK_EQ(Validate(options), "");
     CHECK(match_options.method == Method::kSdf);
   }
@@ -114,8 +108,8 @@ class NeighbourhoodVerifier {
   // Returns the most likely of the match's own pose, its rivals and the
   // proposals; nullopt if none of them can be registered.
   [[nodiscard]] std::optional<Decision> Decide(const Task& task) const {
-    const Place& reference = references_.places->at(task.ids.first);
-    const Place& query = queries_.places->at(task.ids.second);
+    const Place& reference = maps_.references.places->at(task.ids.first);
+    const Place& query = maps_.queries.places->at(task.ids.second);
     // A pair that was never matched needs rivals of its own.
     std::vector<Rigid2> hypotheses;
     if (task.match == nullptr) {
@@ -163,7 +157,7 @@ class NeighbourhoodVerifier {
     for (PairPose& proposal : neighbours) {
       proposal.score = match.pair.score;
       // Within one map, the lower id is the reference.
-      if (min_index_gap_ && proposal.query < proposal.reference) {
+      if (maps_.min_index_gap && proposal.query < proposal.reference) {
         std::swap(proposal.reference, proposal.query);
         proposal.T_reference_query = proposal.T_reference_query.Inverse();
       }
@@ -172,8 +166,8 @@ class NeighbourhoodVerifier {
   }
 
   [[nodiscard]] Neighbourhood Measure(const PairPose& pair) const {
-    return MeasureNeighbourhood(options_, match_options_.verification,
-                                references_, queries_, min_index_gap_, pair);
+    return MeasureNeighbourhood(options_, match_options_.verification, maps_,
+                                pair);
   }
 
   void SetEvidence(const NeighbourhoodEvidence& evidence,
@@ -192,7 +186,7 @@ class NeighbourhoodVerifier {
         task->proposals.begin(), task->proposals.end(),
         [](const PairPose& a, const PairPose& b) { return a.score > b.score; });
     const Eigen::Vector2d centroid =
-        ObservedCentroid(queries_.places->at(task->ids.second).surface);
+        ObservedCentroid(maps_.queries.places->at(task->ids.second).surface);
     std::vector<PairPose> kept = KeepDistinct(
         task->proposals,
         [](const PairPose& proposal) { return proposal.T_reference_query; },
@@ -225,10 +219,20 @@ class NeighbourhoodVerifier {
 
   const NeighbourhoodOptions& options_;
   const MatchOptions& match_options_;
-  const TrajectoryPlaces& references_;
-  const TrajectoryPlaces& queries_;
-  const std::optional<int> min_index_gap_;
+  const NeighbourhoodMaps& maps_;
 };
+
+// Only what pairs found by themselves: poses that neighbours propose are no
+// independent evidence.
+OwnMatches OwnMatchesOf(const std::vector<Match>& matches) {
+  OwnMatches own_matches;
+  for (const Match& match : matches) {
+    PairPose pair = match.pair;
+    pair.score = match.pair_score;
+    own_matches.emplace(IdsOf(pair), pair);
+  }
+  return own_matches;
+}
 
 using Proposals = std::vector<std::vector<PairPose>>;
 
@@ -264,13 +268,15 @@ std::vector<PairPose> DecideAll(const NeighbourhoodVerifier& verifier,
 
 }  // namespace
 
-std::vector<Match> VerifyNeighbourhoods(
-    const NeighbourhoodOptions& options, const MatchOptions& match_options,
-    const TrajectoryPlaces& references, const TrajectoryPlaces& queries,
-    const std::optional<int> min_index_gap, std::vector<Match> matches,
-    const Executor& executor, const ProgressCallback& on_progress) {
-  const NeighbourhoodVerifier verifier(options, match_options, references,
-                                       queries, min_index_gap);
+std::vector<Match> VerifyNeighbourhoods(const NeighbourhoodOptions& options,
+                                        const MatchOptions& match_options,
+                                        NeighbourhoodMaps maps,
+                                        std::vector<Match> matches,
+                                        const Executor& executor,
+                                        const ProgressCallback& on_progress) {
+  const OwnMatches own_matches = OwnMatchesOf(matches);
+  maps.own_matches = &own_matches;
+  const NeighbourhoodVerifier verifier(options, match_options, maps);
   Proposals first_proposals(matches.size());
   TaskProgress first_half(on_progress, matches.size(), 0., 0.5);
   executor(matches.size(), [&](const size_t k) {
@@ -301,13 +307,8 @@ std::vector<Match> VerifyNeighbourhoods(
 
 void VerifyNeighbourhood(const NeighbourhoodOptions& options,
                          const MatchOptions& match_options,
-                         const TrajectoryPlaces& references,
-                         const TrajectoryPlaces& queries,
-                         const std::optional<int> min_index_gap,
-                         Match* const match) {
-  NeighbourhoodVerifier(options, match_options, references, queries,
-                        min_index_gap)
-      .VerifyMatch(match);
+                         const NeighbourhoodMaps& maps, Match* const match) {
+  NeighbourhoodVerifier(options, match_options, maps).VerifyMatch(match);
 }
 
 }  // namespace cartographer_sdf

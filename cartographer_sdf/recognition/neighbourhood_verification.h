@@ -7,7 +7,6 @@
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_VERIFICATION_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_NEIGHBOURHOOD_VERIFICATION_H_
 
-#include <optional>
 #include <vector>
 
 #include "cartographer_sdf/execution/executor.h"
@@ -17,24 +16,21 @@
 
 namespace cartographer_sdf {
 
-// `matches` are of method kSdf, in the order of their ids: of pairs within one
-// map, the lower id first (with `min_index_gap`), or between two maps
-// (without). Returns for each pair the pose that its neighbourhood makes most
-// likely, with score and verdict based on the neighbourhood, including pairs
-// that had no pose before. In the order of the ids.
+// `matches` are of method kSdf, found by each pair of submaps by itself, in the
+// order of their ids; the lower id first within one map. They take the place of
+// maps.own_matches. Returns for each pair the pose that its neighbourhood
+// makes most likely, with score and verdict based on the neighbourhood,
+// including pairs that had no pose before. In the order of the ids.
 [[nodiscard]] std::vector<Match> VerifyNeighbourhoods(
     const NeighbourhoodOptions& options, const MatchOptions& match_options,
-    const TrajectoryPlaces& references, const TrajectoryPlaces& queries,
-    std::optional<int> min_index_gap, std::vector<Match> matches,
+    NeighbourhoodMaps maps, std::vector<Match> matches,
     const Executor& executor, const ProgressCallback& on_progress = {});
 
 // Does the same for one match at its given pose: sets its score, verdict and
 // neighbourhood evidence. Ignores its rivals and its proposals to other pairs.
 void VerifyNeighbourhood(const NeighbourhoodOptions& options,
                          const MatchOptions& match_options,
-                         const TrajectoryPlaces& references,
-                         const TrajectoryPlaces& queries,
-                         std::optional<int> min_index_gap, Match* match);
+                         const NeighbourhoodMaps& maps, Match* match);
 
 }  // namespace cartographer_sdf
 

@@ -141,18 +141,29 @@ std::vector<Match> MatchPairs(const MatchOptions& options,
 }
 
 std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
-                                 const TrajectoryPlaces& references,
-                                 const TrajectoryPlaces& queries,
-                                 const std::optional<int> min_index_gap,
+                                 NeighbourhoodMaps maps,
                                  std::vector<Match> matches,
                                  const Executor& executor,
                                  StageClock* const clock) {
   if (!options.verify_neighbourhoods || options.match.method != Method::kSdf) {
     return matches;
   }
-  return VerifyNeighbourhoods(options.neighbourhood, options.match, references,
-                              queries, min_index_gap, std::move(matches),
-                              executor, clock->Begin("verify neighbourhoods"));
+  const ProgressCallback on_progress = clock->Begin("verify neighbourhoods");
+  const auto find_links = [&](const TrajectoryPlaces& map) {
+    return TrajectoryLinks(options.links, options.match.verification, map,
+                           executor);
+  };
+  const TrajectoryLinks reference_links = find_links(maps.references);
+  std::optional<TrajectoryLinks> query_links;
+  // Within one map both are the same.
+  if (!maps.min_index_gap) query_links.emplace(find_links(maps.queries));
+  maps.reference_links = &reference_links;
+  maps.query_links = query_links ? &*query_links : &reference_links;
+  matches = VerifyNeighbourhoods(options.neighbourhood, options.match, maps,
+                                 std::move(matches), executor, on_progress);
+  RefuseRivalMatches(options.rivals, options.match.verification.judgement, maps,
+                     &matches);
+  return matches;
 }
 
 }  // namespace
@@ -160,7 +171,8 @@ std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
 std::string Validate(const RecognitionOptions& options) {
   for (const std::string& error :
        {Validate(options.match), Validate(options.retrieval),
-        Validate(options.neighbourhood)}) {
+        Validate(options.links), Validate(options.neighbourhood),
+        Validate(options.rivals)}) {
     if (!error.empty()) return error;
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";
@@ -175,7 +187,7 @@ std::vector<Match> RecognizeWithin(const RecognitionOptions& options,
   std::vector<Match> matches = MatchPairs(
       options.match, *map.places, *map.places,
       PairsWithin(options, *map.places, executor), executor, on_progress);
-  return VerifyIfAsked(options, map, map, options.min_index_gap,
+  return VerifyIfAsked(options, {map, map, options.min_index_gap},
                        std::move(matches), executor, clock);
 }
 
@@ -187,7 +199,7 @@ std::vector<Match> RecognizeBetween(const RecognitionOptions& options,
   const ProgressCallback on_progress = clock->Begin("match and verify");
   std::vector<Match> matches = MatchBetween(
       options, *references.places, *queries.places, executor, on_progress);
-  return VerifyIfAsked(options, references, queries, std::nullopt,
+  return VerifyIfAsked(options, {references, queries, std::nullopt},
                        std::move(matches), executor, clock);
 }
 

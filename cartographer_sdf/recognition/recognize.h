@@ -17,6 +17,8 @@
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
+#include "cartographer_sdf/recognition/rival_matches.h"
+#include "cartographer_sdf/recognition/trajectory_links.h"
 
 namespace cartographer_sdf {
 
@@ -33,7 +35,10 @@ struct RecognitionOptions {
   // Whether to verify matches together with the neighbours of both submaps.
   // Localization verifies whole placements instead (localization/).
   bool verify_neighbourhoods = true;
+  TrajectoryLinkOptions links;
   NeighbourhoodOptions neighbourhood;
+  // Applied together with the verification of neighbourhoods.
+  RivalMatchOptions rivals;
 };
 [[nodiscard]] std::string Validate(const RecognitionOptions& options);
 

@@ -34,8 +34,8 @@ struct PairEvidence : PairAgreement {
   [[nodiscard]] double WallDistance() const;
   // How much the walls speak for the pose: grows with the number of tiles that
   // agree, and is negative where fewer agree than at the best of wrong poses.
-  // Tiles near each other are not independent, so their number counts by a
-  // power below one.
+  // Tiles near each other are not independent, so their number counts by its
+  // square root.
   [[nodiscard]] double WallEvidence() const;
   // Smaller eigenvalue of the scatter, in [0, 0.5]: 0 in a bare corridor.
   [[nodiscard]] double MinScatterEigenvalue() const;

@@ -17,7 +17,7 @@ struct ScoreTerm {
   double ScoreWeights::*weight;
 };
 constexpr std::array<ScoreTerm, kNumScoreTerms> kScoreTerms = {
-    {{"contradiction_ratio", &ScoreWeights::contradiction_ratio},
+    {{"log_contradiction_ratio", &ScoreWeights::log_contradiction_ratio},
      {"log_overlap", &ScoreWeights::log_overlap},
      {"wall_evidence", &ScoreWeights::wall_evidence},
      {"sqrt_scatter_eigenvalue", &ScoreWeights::sqrt_scatter_eigenvalue},
@@ -72,8 +72,8 @@ std::array<const char*, kNumScoreTerms> ScoreTermNames() {
 
 std::array<double, kNumScoreTerms> ScoreTerms(const PairEvidence& evidence,
                                               const double margin) {
-  return {evidence.MeanContradictionRatio(), std::log(0.05 + evidence.overlap),
-          evidence.WallEvidence(),
+  return {std::log(0.02 + evidence.MeanContradictionRatio()),
+          std::log(0.05 + evidence.overlap), evidence.WallEvidence(),
           std::sqrt(std::max(evidence.MinScatterEigenvalue(), 0.)), margin};
 }
 

@@ -29,12 +29,14 @@ enum class Verdict {
 // regression on pairs of submaps of several buildings; see
 // scripts/learn_score.py.
 struct ScoreWeights {
-  double contradiction_ratio = -99.5;  // mean of both directions
-  double log_overlap = 2.32;           // ln(0.05 + PairEvidence::overlap)
-  double wall_evidence = 0.8;
-  double sqrt_scatter_eigenvalue = 10.;
-  double margin = 1.04;  // to the best distinct pose, capped
-  double bias = -4.67;
+  // ln(0.02 + the mean contradiction ratio of both directions): the first
+  // walls that contradict say more than further ones, as moved furniture does.
+  double log_contradiction_ratio = -2.1;
+  double log_overlap = 1.69;  // ln(0.05 + PairEvidence::overlap)
+  double wall_evidence = 1.43;
+  double sqrt_scatter_eigenvalue = 14.7;
+  double margin = 0.69;  // to the best distinct pose, capped
+  double bias = -15.;
 };
 [[nodiscard]] std::string Validate(const ScoreWeights& weights);
 
@@ -43,12 +45,12 @@ struct JudgementOptions {
   // Least area observed by both submaps [m^2].
   double min_overlap_area = 10.;
   // Largest ratio of contradicting wall points, in the worse direction.
-  double max_contradiction_ratio = 0.10;
+  double max_contradiction_ratio = 0.25;
   // Lower bound on the smaller eigenvalue of the scatter of wall normals, in
   // [0, 0.5].
   double min_scatter_eigenvalue = 0.03;
   // Least score; log-odds of being correct.
-  double min_score = 3.;
+  double min_score = 4.;
   // A distinct pose (1 m or 20 degrees away) whose score is closer than this
   // makes the pair ambiguous; log-odds.
   double min_margin = 0.7;

@@ -108,6 +108,10 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
        [&](const LocalizationOptions& options) {
          return Locate(options, MatchesOfOne());
        }},
+      {"placement.max_contradiction_ratio",
+       [&](const LocalizationOptions& options) {
+         return Locate(options, MatchesOfOne(), kMisplaced);
+       }},
       {"placement.max_contradicting_fraction",
        [&](const LocalizationOptions& options) {
          return Locate(options, MatchesOfOne(), kMisplaced);

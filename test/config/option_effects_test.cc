@@ -20,6 +20,7 @@
 #include "cartographer_sdf/recognition/recognize.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
+#include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::option_effects_test {
 namespace {
@@ -126,6 +127,44 @@ void KeepBadPoses(RecognitionOptions* const options) {
   ranking.max_fine_score_gap = 10.;
 }
 
+// What becomes of matches of three submaps, each with two others: farther apart
+// by the way than by local SLAM, turned, and with leads from none to 5.
+std::string RefusedRivals(const RivalMatchOptions& options) {
+  const std::map<SubmapId, Place> places;
+  const std::map<SubmapId, OdometryPose> odometry = {
+      {{0, 0}, {Rigid2(), 0.}}, {{0, 1}, {Rigid2(1., 0., 0.), 40.}}};
+  const TrajectoryPlaces map{&places, &odometry};
+  std::vector<Match> matches;
+  const auto add = [&matches](const int query, const Rigid2& pose,
+                              const double lead) {
+    for (const int reference : {0, 1}) {
+      Match match;
+      match.pair = {{0, reference},
+                    {1, query},
+                    reference == 0 ? pose : Rigid2(-1., 0., 0.),
+                    reference == 0 ? 8. : 8. - lead};
+      match.verdict = Verdict::kAccepted;
+      matches.push_back(match);
+    }
+  };
+  int query = 0;
+  for (const double lead : {0., 1., 2., 5.}) {
+    for (const double distance : {0.8, 1.7, 2.5, 3.6, 5., 20.}) {
+      add(query++, Rigid2(distance, 0., 0.), lead);
+    }
+    for (const double rotation : {0.2, 0.4, 0.7, 3.}) {
+      add(query++, Rigid2(0., 0., rotation), lead);
+    }
+  }
+  RefuseRivalMatches(options, JudgementOptions(), {map, map, std::nullopt},
+                     &matches);
+  std::ostringstream text;
+  for (const Match& match : matches) {
+    text << VerdictName(match.verdict) << match.pair.score << " ";
+  }
+  return text.str();
+}
+
 TEST(OptionEffectsTest, OfPlaces) {
   const Drive drive;
   const std::vector<testing::Scenario<PlaceOptions>> scenarios = {
@@ -180,6 +219,21 @@ TEST(OptionEffectsTest, OfRecognition) {
       {"match.ransac.", by_paper},
       {"match.min_num_inliers", by_paper},
       {"match.seed", by_paper},
+      {"links.",
+       [](const RecognitionOptions& options) {
+         const testing::SlippedVisit visit{testing::TwoVisits()};
+         std::ostringstream text;
+         const TrajectoryLinks links(options.links, options.match.verification,
+                                     visit.Places(), MakeExecutor(1));
+         for (const SubmapId& id : links.broken()) {
+           text << id;
+         }
+         return text.str();
+       }},
+      {"rivals.",
+       [](const RecognitionOptions& options) {
+         return RefusedRivals(options.rivals);
+       }},
       {"neighbourhood.",
        [&](const RecognitionOptions& options) {
          RecognitionOptions generous = options;

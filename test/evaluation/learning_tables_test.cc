@@ -76,8 +76,9 @@ TEST(WriteNeighbourhoodTermsTest, LeavesOutWhatWasNotMeasured) {
                   .ok());
   EXPECT_EQ(directory.Read("terms.csv"),
             "reference_trajectory,reference_index,query_trajectory,"
-            "query_index,score,pair_score,log_contradiction\n"
-            "0,3,1,2,2.5,4.5,0\n");
+            "query_index,score,pair_score,log_contradiction,"
+            "log_confirmation\n"
+            "0,3,1,2,2.5,4.5,0,0\n");
 }
 
 TEST(WriteAnswerLabelsTest, WritesOneRowPerAnswer) {

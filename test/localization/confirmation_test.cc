@@ -86,7 +86,7 @@ TEST_F(ConfirmPlacementTest, WallsInFreeSpaceContradict) {
   EXPECT_EQ(match.pair.query, VisitedRooms::kEastAgain);
   EXPECT_EQ(match.verdict, Verdict::kContradicted);
   EXPECT_GT(match.evidence.MeanContradictionRatio(),
-            2. * JudgementOptions().max_contradiction_ratio);
+            PlacementOptions().max_contradiction_ratio);
 }
 
 // Its walls may be anywhere after a long way.

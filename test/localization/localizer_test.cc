@@ -125,6 +125,18 @@ TEST_F(LocalizeTest, LikelyMatchesAloneAreNeverEnough) {
   EXPECT_EQ(found.T_map_query, std::nullopt);
 }
 
+TEST_F(LocalizeTest, ARivalThatWouldBeCertainByItselfMakesItAmbiguous) {
+  options_.placement.max_place_score = 20.;
+  const Match elsewhere =
+      InWestRoom(6.4, Verdict::kAccepted, Rigid2(3., 1., 2.));
+  EXPECT_EQ(Find({InWestRoom(15., Verdict::kAccepted), elsewhere}).verdict,
+            LocalizationVerdict::kLocalized);
+  // The lead is as large as before.
+  const Match certain = InWestRoom(6.6, Verdict::kAccepted, Rigid2(3., 1., 2.));
+  EXPECT_EQ(Find({InWestRoom(15.2, Verdict::kAccepted), certain}).verdict,
+            LocalizationVerdict::kAmbiguous);
+}
+
 // A rival that only likely matches speak for is a rival all the same.
 TEST_F(LocalizeTest, LikelyMatchesElsewhereMakeItAmbiguous) {
   options_.placement.further_match_weight = 1.;

@@ -3,11 +3,14 @@
 
 #include "cartographer_sdf/recognition/neighbourhood.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/two_visits.h"
@@ -23,8 +26,36 @@ constexpr double kDegree = M_PI / 180.;
 Neighbourhood Ask(const TwoVisits& visits, const Rigid2& T_reference_query,
                   const NeighbourhoodOptions& options = {}) {
   return MeasureNeighbourhood(
-      options, VerificationOptions(), visits.Places(), visits.Places(), 3,
+      options, VerificationOptions(), {visits.Places(), visits.Places(), 3},
       {TwoVisits::kWestFirst, TwoVisits::kWestAgain, T_reference_query});
+}
+
+// With the match of the east rooms by themselves, `error` away from the truth.
+Neighbourhood AskWithEastMatch(const TwoVisits& visits, const Rigid2& error,
+                               const double score) {
+  const std::pair<SubmapId, SubmapId> east{TwoVisits::kEastFirst,
+                                           TwoVisits::kEastAgain};
+  const OwnMatches own_matches = {
+      {east,
+       {east.first, east.second,
+        visits.T_world_submap(east.first).Inverse() *
+            visits.T_world_submap(east.second) * error,
+        score}}};
+  NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
+  maps.own_matches = &own_matches;
+  return MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
+                              maps,
+                              {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                               visits.T_west_first_west_again()});
+}
+
+bool Proposes(const Neighbourhood& neighbourhood, const SubmapId& reference,
+              const SubmapId& query) {
+  return std::any_of(
+      neighbourhood.proposals.begin(), neighbourhood.proposals.end(),
+      [&](const PairPose& proposal) {
+        return proposal.reference == reference && proposal.query == query;
+      });
 }
 
 TEST(NeighbourhoodTest, NeighboursOfTheRightPoseAgree) {
@@ -81,10 +112,11 @@ TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
 TEST(NeighbourhoodTest, LeavesOutPairsThatShareScans) {
   const TwoVisits visits;
   const auto count = [&](const std::optional<int> min_index_gap) {
-    return MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
-                                visits.Places(), visits.Places(), min_index_gap,
-                                {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
-                                 visits.T_west_first_west_again()})
+    return MeasureNeighbourhood(
+               NeighbourhoodOptions(), VerificationOptions(),
+               {visits.Places(), visits.Places(), min_index_gap},
+               {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                visits.T_west_first_west_again()})
         .evidence.num_pairs;
   };
   EXPECT_GT(count(3), 0);
@@ -117,9 +149,61 @@ TEST(NeighbourhoodTest, IndicesMayBeAsLargeAsTheyLike) {
   }
   const TrajectoryPlaces map{&places, &odometry};
   EXPECT_EQ(MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
-                                 map, map, 3, {{0, 0}, {0, kLast}, Rigid2()})
+                                 {map, map, 3}, {{0, 0}, {0, kLast}, Rigid2()})
                 .evidence.num_pairs,
             0);
+}
+
+TEST(NeighbourhoodTest, AMatchWherePredictedConfirms) {
+  const TwoVisits visits;
+  // Nearer than max_prediction_error_meters; a match that is unlikely by
+  // itself, in a room whose furniture was moved, confirms all the same.
+  const Neighbourhood confirmed =
+      AskWithEastMatch(visits, Rigid2(0.1, 0., 0.), -5.);
+  EXPECT_EQ(confirmed.evidence.num_confirming, 1);
+  EXPECT_EQ(confirmed.evidence.num_refuting, 0.);
+  EXPECT_NEAR(LogConfirmation(confirmed.evidence), std::log(1.5 / 0.5), 1e-12);
+  // The pair has found it already.
+  EXPECT_FALSE(
+      Proposes(confirmed, TwoVisits::kEastFirst, TwoVisits::kEastAgain));
+}
+
+TEST(NeighbourhoodTest, AMatchElsewhereRefutesByItsProbability) {
+  const TwoVisits visits;
+  const Neighbourhood refuted =
+      AskWithEastMatch(visits, Rigid2(3., 0., 0.), std::log(0.8 / 0.2));
+  EXPECT_EQ(refuted.evidence.num_confirming, 0);
+  EXPECT_NEAR(refuted.evidence.num_refuting, 0.8, 1e-12);
+  EXPECT_NEAR(LogConfirmation(refuted.evidence), std::log(0.5 / 1.3), 1e-12);
+  // The walls are compared where they were predicted.
+  EXPECT_EQ(refuted.evidence.contradicting_length,
+            Ask(visits, visits.T_west_first_west_again())
+                .evidence.contradicting_length);
+  EXPECT_TRUE(Proposes(refuted, TwoVisits::kEastFirst, TwoVisits::kEastAgain));
+}
+
+TEST(NeighbourhoodTest, LeavesOutWhatLiesBeyondABrokenLink) {
+  const TwoVisits visits;
+  const TrajectoryLinks broken(TrajectoryLinkOptions(), VerificationOptions(),
+                               testing::SlippedVisit(visits).Places(),
+                               MakeExecutor(1));
+  ASSERT_TRUE(
+      broken.IsBrokenBetween(TwoVisits::kWestAgain, TwoVisits::kEastAgain));
+  NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
+  const auto asks_east = [&] {
+    return Proposes(MeasureNeighbourhood(
+                        NeighbourhoodOptions(), VerificationOptions(), maps,
+                        {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                         visits.T_west_first_west_again()}),
+                    TwoVisits::kEastFirst, TwoVisits::kEastAgain);
+  };
+  EXPECT_TRUE(asks_east());
+  maps.query_links = &broken;
+  EXPECT_FALSE(asks_east());
+  maps.query_links = nullptr;
+  // Of the other side, where nothing is broken.
+  maps.reference_links = &broken;
+  EXPECT_TRUE(asks_east());
 }
 
 TEST(LogContradictionTest, IsMeasuredAgainstThePrior) {
@@ -136,15 +220,17 @@ TEST(LogContradictionTest, IsMeasuredAgainstThePrior) {
 
 TEST(NeighbourhoodScoreTest, IsLinearInItsTerms) {
   NeighbourhoodOptions options;
-  options.weights = {0.5, -4., -1.};
-  const NeighbourhoodEvidence evidence{4, 50., 10.};
+  options.weights = {0.5, -4., 2., -1.};
+  const NeighbourhoodEvidence evidence{4, 50., 10., 2, 0.25};
   EXPECT_NEAR(NeighbourhoodScore(options, 6., evidence),
-              0.5 * 6. - 4. * LogContradiction(options, evidence) - 1., 1e-12);
+              0.5 * 6. - 4. * LogContradiction(options, evidence) +
+                  2. * std::log(2.5 / 0.75) - 1.,
+              1e-12);
 }
 
 TEST(NeighbourhoodScoreTest, NeighboursAloneMakeNothingCertain) {
   NeighbourhoodOptions options;
-  options.weights = {0.5, -4., -1.};
+  options.weights = {0.5, -4., 2., -1.};
   options.max_gain = 2.5;
   // Hundreds of metres of wall, of which nothing contradicts.
   const NeighbourhoodEvidence evidence{20, 1000., 0.};

@@ -43,7 +43,7 @@ std::vector<Match> WestMatch(const TwoVisits& visits) {
 std::vector<Match> Judged(const TwoVisits& visits, std::vector<Match> matches,
                           const Executor& executor = &Forwards) {
   return VerifyNeighbourhoods(NeighbourhoodOptions(), MatchOptions(),
-                              visits.Places(), visits.Places(), 3,
+                              {visits.Places(), visits.Places(), 3},
                               std::move(matches), executor);
 }
 
@@ -142,9 +142,9 @@ TEST(VerifyNeighbourhoodsTest, ChoosesTheRivalThatNeighboursAgreeWith) {
       Rigid2(2., 0.5, 0.) * visits.T_world_submap(TwoVisits::kWestAgain);
   NeighbourhoodOptions options;
   options.min_proposing_score = -1e3;
-  const std::vector<Match> judged =
-      VerifyNeighbourhoods(options, MatchOptions(), visits.Places(),
-                           visits.Places(), 3, {match}, &Forwards);
+  const std::vector<Match> judged = VerifyNeighbourhoods(
+      options, MatchOptions(), {visits.Places(), visits.Places(), 3}, {match},
+      &Forwards);
   const Match* const west =
       Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
   ASSERT_NE(west, nullptr);
@@ -158,9 +158,9 @@ TEST(VerifyNeighbourhoodsTest, UnlikelyMatchesProposeNothing) {
   const TwoVisits visits;
   NeighbourhoodOptions options;
   options.min_proposing_score = 1e3;
-  const std::vector<Match> judged =
-      VerifyNeighbourhoods(options, MatchOptions(), visits.Places(),
-                           visits.Places(), 3, WestMatch(visits), &Forwards);
+  const std::vector<Match> judged = VerifyNeighbourhoods(
+      options, MatchOptions(), {visits.Places(), visits.Places(), 3},
+      WestMatch(visits), &Forwards);
   ASSERT_EQ(judged.size(), 1u);
   EXPECT_EQ(judged[0].pair.query, TwoVisits::kWestAgain);
 }
@@ -177,8 +177,9 @@ TEST(VerifyNeighbourhoodsTest, ProposalsBetweenMapsKeepTheirSides) {
   std::swap(turned.pair.reference, turned.pair.query);
   turned.pair.T_reference_query = turned.pair.T_reference_query.Inverse();
   const std::vector<Match> judged = VerifyNeighbourhoods(
-      NeighbourhoodOptions(), MatchOptions(), {&again, odometry},
-      {&first, odometry}, std::nullopt, {turned}, &Forwards);
+      NeighbourhoodOptions(), MatchOptions(),
+      {{&again, odometry}, {&first, odometry}, std::nullopt}, {turned},
+      &Forwards);
   const Match* const east =
       Find(judged, TwoVisits::kEastAgain, TwoVisits::kEastFirst);
   ASSERT_NE(east, nullptr);
@@ -195,11 +196,11 @@ TEST(VerifyNeighbourhoodTest, FillsInScoreVerdictAndEvidence) {
   const MatchOptions match_options;
   Match match = WestMatch(visits).front();
   const Match before = match;
-  VerifyNeighbourhood(options, match_options, visits.Places(), visits.Places(),
-                      3, &match);
+  const NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
+  VerifyNeighbourhood(options, match_options, maps, &match);
   const NeighbourhoodEvidence expected =
-      MeasureNeighbourhood(options, match_options.verification, visits.Places(),
-                           visits.Places(), 3, before.pair)
+      MeasureNeighbourhood(options, match_options.verification, maps,
+                           before.pair)
           .evidence;
   ASSERT_TRUE(match.neighbourhood.has_value());
   ASSERT_GE(expected.num_pairs, 1);
@@ -219,8 +220,7 @@ TEST(VerifyNeighbourhoodTest, FillsInScoreVerdictAndEvidence) {
   // The score in the neighbourhood is the one that is judged.
   MatchOptions strict = match_options;
   strict.verification.judgement.min_score = match.pair.score + 1e-6;
-  VerifyNeighbourhood(options, strict, visits.Places(), visits.Places(), 3,
-                      &match);
+  VerifyNeighbourhood(options, strict, maps, &match);
   EXPECT_EQ(match.verdict, Verdict::kUnlikely);
 }
 
@@ -229,8 +229,8 @@ TEST(VerifyNeighbourhoodTest, TheUnlikelyIsNotMeasured) {
   NeighbourhoodOptions options;
   Match match = WestMatch(visits).front();
   options.min_pair_score = match.pair_score + 1e-6;
-  VerifyNeighbourhood(options, MatchOptions(), visits.Places(), visits.Places(),
-                      3, &match);
+  VerifyNeighbourhood(options, MatchOptions(),
+                      {visits.Places(), visits.Places(), 3}, &match);
   ASSERT_TRUE(match.neighbourhood.has_value());
   EXPECT_EQ(match.neighbourhood->num_pairs, 0);
   EXPECT_EQ(match.pair.score,

@@ -63,6 +63,31 @@ class TwoVisits {
   std::map<SubmapId, Rigid2> T_world_submap_;
 };
 
+// A visit that sees the west room twice, as the submaps kWestAgain and
+// kEastAgain, between which local SLAM slips by two metres and a quarter turn.
+class SlippedVisit {
+ public:
+  explicit SlippedVisit(const TwoVisits& visits,
+                        const Rigid2& slip = Rigid2(2., 0., 1.57)) {
+    const Place& first = visits.Places().places->at(TwoVisits::kWestAgain);
+    Place second = visits.Places().places->at(TwoVisits::kWestFirst);
+    second.id = TwoVisits::kEastAgain;
+    places_.emplace(first.id, first);
+    places_.emplace(second.id, second);
+    odometry_[first.id] = {Rigid2(), 0.};
+    odometry_[second.id] = {visits.T_west_first_west_again().Inverse() * slip,
+                            20.};
+  }
+
+  [[nodiscard]] TrajectoryPlaces Places() const {
+    return {&places_, &odometry_};
+  }
+
+ private:
+  std::map<SubmapId, Place> places_;
+  std::map<SubmapId, OdometryPose> odometry_;
+};
+
 }  // namespace cartographer_sdf::testing
 
 #endif  // TEST_TESTING_TWO_VISITS_H_

@@ -17,7 +17,7 @@ constexpr double kMargin = 2.;
 // Just beyond every limit of the default options.
 PairEvidence GoodEvidence() {
   PairEvidence evidence;
-  evidence.query_in_reference = {100., 90., 9., 0.};
+  evidence.query_in_reference = {100., 75., 24., 0.};
   evidence.reference_in_query = {100., 90., 1., 0.};
   evidence.overlap_area = 11.;
   evidence.overlap = 0.5;
@@ -39,7 +39,7 @@ TEST(JudgeTest, EachLimitHasItsReason) {
   options.min_overlap_area = 11.5;
   EXPECT_EQ(JudgeGood(options), Verdict::kTooLittleOverlap);
   options = JudgementOptions();
-  options.max_contradiction_ratio = 0.08;
+  options.max_contradiction_ratio = 0.23;
   EXPECT_EQ(JudgeGood(options), Verdict::kContradicted);
   options = JudgementOptions();
   options.min_scatter_eigenvalue = 0.05;
@@ -56,7 +56,7 @@ TEST(JudgeTest, TheWorseDirectionContradicts) {
   PairEvidence evidence = GoodEvidence();
   std::swap(evidence.query_in_reference, evidence.reference_in_query);
   evidence.query_in_reference.contradictions = 0.;
-  evidence.reference_in_query.contradictions = 11.;
+  evidence.reference_in_query.contradictions = 26.;
   EXPECT_EQ(Judge(JudgementOptions(), evidence, kScore, kMargin),
             Verdict::kContradicted);
 }
@@ -73,14 +73,17 @@ TEST(JudgementScoreTest, RisesWithAgreementAndFallsWithContradictions) {
   PairEvidence other = evidence;
   other.query_in_reference.contradictions += 2.;
   // 2 of 100 points in one of two directions.
+  const double ratio = evidence.MeanContradictionRatio();
   EXPECT_NEAR(Score(weights, other, kMargin),
-              score + 0.01 * weights.contradiction_ratio, 1e-9);
+              score + weights.log_contradiction_ratio *
+                          std::log((0.02 + ratio + 0.01) / (0.02 + ratio)),
+              1e-9);
   other = evidence;
   other.tiles.num_tiles = 20.;
-  EXPECT_NEAR(Score(weights, other, kMargin),
-              score + weights.wall_evidence *
-                          (std::pow(20., 0.75) - std::pow(10., 0.75)) * 0.15,
-              1e-9);
+  EXPECT_NEAR(
+      Score(weights, other, kMargin),
+      score + weights.wall_evidence * (std::sqrt(20.) - std::sqrt(10.)) * 0.3,
+      1e-9);
   EXPECT_NEAR(Score(weights, evidence, kMargin + 1.), score + weights.margin,
               1e-9);
 }

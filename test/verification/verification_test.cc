@@ -109,8 +109,9 @@ TEST(VerifyHypothesesTest, TooLittleOverlap) {
 
 TEST(VerifyHypothesesTest, ContradictedByAWallInFreeSpace) {
   const Building room = BareRoom(8., 6.);
-  const Building with_cupboard =
-      Joined(room, {Furniture(1., 0.5, 1.6, 1.6, 0.)});
+  const Building with_cupboard = Joined(
+      room,
+      {Furniture(1., 0.5, 1.6, 1.6, 0.), Furniture(-1.6, -0.3, 1.6, 1.6, 0.)});
   const testing::Viewpoints viewpoints = {{-3., -2.}, {3., 2.}, {-2., 2.}};
   const Pair pair = MakePair(room, viewpoints, with_cupboard, viewpoints);
   const std::optional<VerifiedPose> verification = Verify(pair, {pair.truth});
@@ -269,10 +270,10 @@ TEST(PairEvidenceTest, GrowsWithTheNumberOfTilesThatAgree) {
   PairEvidence agreement;
   EXPECT_EQ(agreement.WallEvidence(), 0.);
   agreement.tiles = {16., 0.95};
-  EXPECT_NEAR(agreement.WallEvidence(), 8. * 0.2, 1e-12);
+  EXPECT_NEAR(agreement.WallEvidence(), 4. * 0.35, 1e-12);
   // Fewer than by chance.
   agreement.tiles = {16., 0.5};
-  EXPECT_NEAR(agreement.WallEvidence(), -8. * 0.25, 1e-12);
+  EXPECT_NEAR(agreement.WallEvidence(), -4. * 0.1, 1e-12);
 }
 
 TEST(ScoreTest, IsLinearInItsTerms) {
@@ -284,7 +285,8 @@ TEST(ScoreTest, IsLinearInItsTerms) {
   agreement.normal_scatter.diagonal() << 0.84, 0.16;
   const ScoreWeights weights{10., 3., 2., 5., 7., -4.};
   EXPECT_NEAR(Score(weights, agreement, 0.1),
-              10. * 0.03 + 3. * std::log(0.75) + 2. * 1.6 + 5. * 0.4 + 0.7 - 4.,
+              10. * std::log(0.05) + 3. * std::log(0.75) + 2. * 1.4 + 5. * 0.4 +
+                  0.7 - 4.,
               1e-12);
 }
 
