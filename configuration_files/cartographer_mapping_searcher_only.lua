@@ -7,9 +7,12 @@
 
 include "cartographer_mapping.lua"
 
--- Fraction of the pairs of nodes and submaps that are matched: of pairs near
--- each other, and of pairs whose trajectories are not connected yet.
-POSE_GRAPH.constraint_builder.sampling_ratio = 0.
+-- [m] Greatest distance of a submap to match a node with. Not
+-- constraint_builder.sampling_ratio = 0.: with that, Cartographer logs a warning
+-- for each node and submap.
+POSE_GRAPH.constraint_builder.max_constraint_distance = 0.
+-- Fraction of the nodes to match with whole submaps of trajectories that are not
+-- connected yet.
 POSE_GRAPH.global_sampling_ratio = 0.
 
 return options

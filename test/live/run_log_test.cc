@@ -24,6 +24,7 @@ namespace {
 
 using ::cartographer_sdf::testing::TemporaryDirectory;
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -62,6 +63,15 @@ std::string SimulatedLog() {
                           pose.rotation(), 1e9 + kSecondsPerScan * i);
   }
   return log;
+}
+
+int NumOccurrences(const std::string& part, const std::string& text) {
+  int count = 0;
+  for (size_t at = text.find(part); at != std::string::npos;
+       at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
 }
 
 class RunLogTest : public ::testing::Test {
@@ -117,6 +127,23 @@ TEST_F(RunLogTest, DrivesASimulatedLog) {
       directory_.Read("report/nodes.csv"),
       HasSubstr("node,time,distance,x,y,yaw,connected,cpu_seconds\n0,"));
   EXPECT_THAT(directory_.Read("report/index.html"), HasSubstr("</html>"));
+}
+
+TEST_F(RunLogTest, SearcherAloneDoesNotFloodTheLog) {
+  const std::string log = directory_.Write("drive.log", SimulatedLog());
+  directory_.Write("small_submaps.lua",
+                   "include \"cartographer_mapping_searcher_only.lua\"\n"
+                   "TRAJECTORY_BUILDER_2D.submaps.num_range_data = 10\n"
+                   "return options\n");
+  const ProgramResult result =
+      Run(log, {"--configuration_basename=small_submaps.lua", "--verbose"});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  // Cartographer's samplers warn whenever one that drops everything is made:
+  // once for the trajectory, not for every node and submap near it.
+  EXPECT_LE(NumOccurrences("dropping all data", result.error), 1);
+  // Its own search for closures is off nevertheless.
+  EXPECT_THAT(result.error, HasSubstr(" 0 computations resulted in 0 "));
+  EXPECT_THAT(result.error, Not(ContainsRegex("[1-9]0* computations")));
 }
 
 TEST_F(RunLogTest, DrivesAPieceInAFrozenMap) {
