@@ -224,8 +224,8 @@ def judge(truth, run, nodes):
     """What became of one drive. Its last pose counts, and what the searcher said."""
     errors = [truth.error(node) for node in nodes]
     is_right = [meters < RIGHT_M and degrees < RIGHT_DEGREES for meters, degrees in errors]
-    said = [math.hypot(answer["T_map_node"]["x"] - truth.in_map(answer["time"])[0],
-                       answer["T_map_node"]["y"] - truth.in_map(answer["time"])[1])
+    said = [math.hypot(answer["T_map_tracking"]["x"] - truth.in_map(answer["time"])[0],
+                       answer["T_map_tracking"]["y"] - truth.in_map(answer["time"])[1])
             for answer in run["localizations"] if answer["localized"]]
     first = next((i for i, node in enumerate(nodes) if node["connected"]), None)
     if first is None:

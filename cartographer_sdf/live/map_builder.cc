@@ -282,10 +282,17 @@ class SearchingMapBuilder : public LiveMapBuilder {
   void Localize(const int trajectory_id) override {
     searcher_->Localize(trajectory_id);
   }
+  std::optional<StartPose> GetStartPose(
+      const int trajectory_id) const override {
+    return searcher_->GetStartPose(trajectory_id);
+  }
   void WaitUntilIdle() override { searcher_->WaitUntilIdle(); }
   LiveSummary GetSummary() const override { return searcher_->GetSummary(); }
   std::vector<ClosureRecord> GetClosures() const override {
     return searcher_->GetClosures();
+  }
+  std::vector<RefusedMatch> GetRefusedMatches() const override {
+    return searcher_->GetRefusedMatches();
   }
 
  private:

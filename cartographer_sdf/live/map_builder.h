@@ -31,6 +31,7 @@
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/verification/judgement.h"
 
 namespace cartographer_sdf {
 
@@ -42,15 +43,20 @@ struct LocalizationResult {
   // Verdict of the latest query; also kUncertain while too few queries agree.
   LocalizationVerdict verdict = LocalizationVerdict::kTooLittleSeen;
   std::string reason;  // human-readable
+  // Whether the trajectory had been localised before this search began, and may
+  // have been carried away.
+  bool was_localized = false;
   // Time of the newest scan used.
   cartographer::common::Time time;
   // The best pose so far; none if nothing matches. Reliable only if
-  // `localized`. Pose in the map of the gravity-aligned node of the newest scan
-  // ...
-  std::optional<Rigid2> T_map_node;
+  // `localized`. Pose in the map of the tracking frame at `time` ...
+  std::optional<Rigid2> T_map_tracking;
   // ... and of the trajectory's local frame, which stays valid while local SLAM
   // does not drift.
   std::optional<Rigid2> T_map_local;
+  // Where the tracking frame would be by the best placement that this pose
+  // excludes; none if there is none.
+  std::optional<Rigid2> T_map_runner_up;
   // Score of the best placement, and of the best one that it excludes, 0 if
   // there is none; log-odds.
   double score = 0.;
@@ -60,6 +66,17 @@ struct LocalizationResult {
   int num_queries = 0;
   double distance_driven = 0.;  // since the search began [m]
   double cpu_seconds = 0.;      // of all queries of the search
+};
+
+// The pose with which a new trajectory goes on where a localised one is now, as
+// `initial_trajectory_pose` of Cartographer's options and /start_trajectory of
+// cartographer_ros expect it.
+struct StartPose {
+  int to_trajectory_id = 0;  // of the map
+  // (first node of that trajectory <- tracking frame at `time`)
+  cartographer::transform::Rigid3d relative_pose;
+  // Time of the newest node of the localised trajectory.
+  cartographer::common::Time time;
 };
 
 // Called on the worker thread, with no lock held, once when a search ends,
@@ -74,6 +91,12 @@ struct ClosureRecord {
   int num_constraints = 0;
 };
 
+// A candidate that verification did not accept, where it came closest.
+struct RefusedMatch {
+  PairPose pair;
+  Verdict verdict = Verdict::kUnlikely;
+};
+
 struct LiveSummary {
   int num_places = 0;   // in the index now
   int num_submaps = 0;  // described since the start
@@ -81,9 +104,10 @@ struct LiveSummary {
   int num_candidates = 0;
   // Number of verified poses, by verdict ("accepted", "contradicted", ...).
   std::map<std::string, int> num_matches;
-  int num_closures = 0;     // accepted
-  int num_injected = 0;     // of them
-  int num_constraints = 0;  // added to the pose graph for them
+  int num_closures = 0;          // accepted
+  int num_injected = 0;          // of them
+  int num_constraints = 0;       // added to the pose graph for them
+  size_t num_waiting_tasks = 0;  // of the worker, without the running one
   double worker_cpu_seconds = 0.;
   // Time that the searcher adds to AddSensorData per local SLAM result [s].
   int64_t num_callbacks = 0;
@@ -101,6 +125,10 @@ class LiveMapBuilder : public cartographer::mapping::MapBuilderInterface {
   // Searches for an active trajectory (again): after it was kidnapped, or if it
   // started with a wrong initial pose. Earlier scans are ignored.
   virtual void Localize(int trajectory_id) = 0;
+  // None if the trajectory is not localised, or what it was localised in is
+  // gone. Unlike the pose of GetLocalization, that of now, by local SLAM.
+  [[nodiscard]] virtual std::optional<StartPose> GetStartPose(
+      int trajectory_id) const = 0;
 
   // Blocks until the worker has no tasks left. For programs that run
   // recordings.
@@ -108,6 +136,9 @@ class LiveMapBuilder : public cartographer::mapping::MapBuilderInterface {
   [[nodiscard]] virtual LiveSummary GetSummary() const = 0;
   // Returns all matches that verification accepted, in order of discovery.
   [[nodiscard]] virtual std::vector<ClosureRecord> GetClosures() const = 0;
+  // Returns the latest 200 candidates that overlap enough to be judged and were
+  // not accepted, in order of discovery.
+  [[nodiscard]] virtual std::vector<RefusedMatch> GetRefusedMatches() const = 0;
 };
 
 // Returns the host itself if `options.enabled` is false; otherwise a

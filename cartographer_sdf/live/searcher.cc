@@ -84,7 +84,8 @@ void Searcher::AddTrajectory(const int trajectory_id,
 void Searcher::BeginSearch(const int trajectory_id,
                            Trajectory* const trajectory) {
   trajectory->was_localized =
-      trajectory->localization && trajectory->localization->localized;
+      trajectory->was_localized ||
+      (trajectory->localization && trajectory->localization->localized);
   trajectory->is_searched = true;
   trajectory->is_restarted = true;
   trajectory->scans.clear();
@@ -93,6 +94,7 @@ void Searcher::BeginSearch(const int trajectory_id,
       trajectory->distance_driven + options_.localization.query_interval_meters;
   LocalizationResult result;
   result.trajectory_id = trajectory_id;
+  result.was_localized = trajectory->was_localized;
   result.verdict = has_map_ ? LocalizationVerdict::kTooLittleSeen
                             : LocalizationVerdict::kNoMap;
   trajectory->localization = result;
@@ -114,12 +116,15 @@ void Searcher::OnLocalSlamResult(
     return;
   }
   Trajectory& trajectory = found->second;
-  const Eigen::Vector2d position =
-      insertion->constant_data->local_pose.translation().head<2>();
-  if (trajectory.position) {
-    trajectory.distance_driven += (position - *trajectory.position).norm();
+  const Rigid2 T_local_tracking =
+      FromHost(insertion->constant_data->local_pose);
+  if (trajectory.T_local_tracking) {
+    trajectory.distance_driven += (T_local_tracking.translation() -
+                                   trajectory.T_local_tracking->translation())
+                                      .norm();
   }
-  trajectory.position = position;
+  trajectory.T_local_tracking = T_local_tracking;
+  trajectory.time = insertion->constant_data->time;
   FollowSubmaps(trajectory_id, *insertion, &trajectory);
   if (trajectory.is_searched && has_map_) {
     CollectScan(trajectory_id, range_data, *insertion, &trajectory);
@@ -338,11 +343,39 @@ void Searcher::Localize(const int trajectory_id) {
   BeginSearch(trajectory_id, &found->second);
 }
 
+std::optional<StartPose> Searcher::GetStartPose(const int trajectory_id) const {
+  StartPose start;
+  Rigid2 T_map_tracking;
+  {
+    const absl::MutexLock lock(&mutex_);
+    const auto found = trajectories_.find(trajectory_id);
+    if (found == trajectories_.end()) return std::nullopt;
+    const Trajectory& trajectory = found->second;
+    if (!trajectory.localization || !trajectory.localization->localized) {
+      return std::nullopt;
+    }
+    start.to_trajectory_id = trajectory.localization->reference->trajectory;
+    start.time = trajectory.time;
+    T_map_tracking =
+        *trajectory.localization->T_map_local * *trajectory.T_local_tracking;
+  }
+  const auto nodes = pose_graph_->GetTrajectoryNodePoses();
+  if (nodes.SizeOfTrajectoryOrZero(start.to_trajectory_id) == 0) {
+    return std::nullopt;
+  }
+  const cartographer::transform::Rigid3d& T_map_first =
+      nodes.BeginOfTrajectory(start.to_trajectory_id)->data.global_pose;
+  start.relative_pose = T_map_first.inverse() * ToHost(T_map_tracking);
+  return start;
+}
+
 LiveSummary Searcher::GetSummary() const {
   const double cpu_seconds = worker_.CpuSeconds();
+  const size_t num_waiting_tasks = worker_.NumWaiting();
   const absl::MutexLock lock(&mutex_);
   LiveSummary summary = summary_;
   summary.worker_cpu_seconds = cpu_seconds;
+  summary.num_waiting_tasks = num_waiting_tasks;
   summary.num_closures = static_cast<int>(closures_.size());
   if (summary.num_callbacks > 0) {
     summary.callback_mean_seconds /= static_cast<double>(summary.num_callbacks);
@@ -365,6 +398,11 @@ std::vector<ClosureRecord> Searcher::GetClosures() const {
                        closure.closure.status, closure.num_constraints});
   }
   return records;
+}
+
+std::vector<RefusedMatch> Searcher::GetRefusedMatches() const {
+  const absl::MutexLock lock(&mutex_);
+  return {refused_.begin(), refused_.end()};
 }
 
 }  // namespace cartographer_sdf

@@ -15,6 +15,7 @@
 #ifndef CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
 #define CARTOGRAPHER_SDF_LIVE_SEARCHER_H_
 
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -92,9 +93,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   [[nodiscard]] std::optional<LocalizationResult> GetLocalization(
       int trajectory_id) const ABSL_LOCKS_EXCLUDED(mutex_);
   void Localize(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] std::optional<StartPose> GetStartPose(int trajectory_id) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
   void WaitUntilIdle() { worker_.WaitUntilIdle(); }
   [[nodiscard]] LiveSummary GetSummary() const ABSL_LOCKS_EXCLUDED(mutex_);
   [[nodiscard]] std::vector<ClosureRecord> GetClosures() const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] std::vector<RefusedMatch> GetRefusedMatches() const
       ABSL_LOCKS_EXCLUDED(mutex_);
 
  private:
@@ -114,8 +119,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     bool is_finished = false;
     int num_submaps = 0;
     const cartographer::mapping::Submap* newest_submap = nullptr;
-    std::vector<int> growing;                 // indices of its submaps
-    std::optional<Eigen::Vector2d> position;  // local
+    std::vector<int> growing;  // indices of its submaps
+    // Of the newest node.
+    std::optional<Rigid2> T_local_tracking;
+    cartographer::common::Time time;
     double distance_driven = 0.;
     // State of the localisation.
     bool is_searched = false;
@@ -232,6 +239,7 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   std::map<int, Trajectory> trajectories_ ABSL_GUARDED_BY(mutex_);
   std::map<SubmapId, SubmapRecord> submaps_ ABSL_GUARDED_BY(mutex_);
   std::vector<LiveClosure> closures_ ABSL_GUARDED_BY(mutex_);
+  std::deque<RefusedMatch> refused_ ABSL_GUARDED_BY(mutex_);
   std::set<SubmapId> gone_ ABSL_GUARDED_BY(mutex_);
   LiveSummary summary_ ABSL_GUARDED_BY(mutex_);
   std::vector<float> callback_seconds_ ABSL_GUARDED_BY(mutex_);

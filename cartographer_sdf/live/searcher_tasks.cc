@@ -25,6 +25,8 @@ constexpr size_t kMaxNumClosuresToAgree = 400;
 // Fraction of the distance driven that counts as drifting odometry in a loaded
 // map: its loops are closed.
 constexpr double kDriftOfMaps = 0.2;
+// Latest candidates that are kept to be shown.
+constexpr size_t kMaxNumRefused = 200;
 constexpr char kPlaceFileSuffix[] = ".places";
 // In a long search, the interval between queries is this fraction of the
 // distance driven since it began.
@@ -40,7 +42,15 @@ void FillIn(const BackgroundSearch::Query& query,
   if (found.placements.empty()) return;
   const Placement& best = found.placements.front();
   result->T_map_local = best.T_map_query * query.T_local_query.Inverse();
-  result->T_map_node = *result->T_map_local * LocalNodePose(newest);
+  const Rigid2 T_local_tracking = FromHost(newest.local_pose);
+  result->T_map_tracking = *result->T_map_local * T_local_tracking;
+  const auto runner_up = std::find_if(
+      found.placements.begin() + 1, found.placements.end(),
+      [](const Placement& placement) { return placement.is_rival; });
+  if (runner_up != found.placements.end()) {
+    result->T_map_runner_up = runner_up->T_map_query *
+                              query.T_local_query.Inverse() * T_local_tracking;
+  }
   result->score = best.score;
   result->runner_up_score = found.runner_up_score.value_or(0.);
   result->reference = found.matches[best.votes.front()].pair.reference;
@@ -118,8 +128,13 @@ bool Searcher::AddClosures(const SubmapId& id,
     TheMetrics().matches.Increment(match.verdict);
     ++summary_.num_matches[VerdictName(match.verdict)];
     // A submap was forgotten meanwhile, or is about to be.
-    if (match.verdict != Verdict::kAccepted ||
-        submaps_.count(match.pair.reference) == 0 || submaps_.count(id) == 0) {
+    if (submaps_.count(match.pair.reference) == 0 || submaps_.count(id) == 0) {
+      continue;
+    }
+    if (match.verdict != Verdict::kAccepted) {
+      if (match.verdict == Verdict::kTooLittleOverlap) continue;
+      refused_.push_back({match.pair, match.verdict});
+      if (refused_.size() > kMaxNumRefused) refused_.pop_front();
       continue;
     }
     closures_.push_back({{match, ClosureStatus::kUnsupported, {}, {}}, 0});
@@ -334,7 +349,7 @@ void Searcher::QueryLocalization(const int trajectory_id) {
   if (!RecordQuery(query, ThreadCpuSeconds() - cpu_begin, &result)) return;
   search_.StopLocalizing(trajectory_id);
   LOG(INFO) << "trajectory " << trajectory_id << " is localised in the map at "
-            << *result.T_map_node << " after " << result.distance_driven
+            << *result.T_map_tracking << " after " << result.distance_driven
             << " m and " << result.num_queries << " queries, score "
             << result.score << ", the next best pose "
             << result.runner_up_score;
@@ -348,6 +363,7 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
   Trajectory& trajectory = trajectories_.at(result->trajectory_id);
   // The search ended or was restarted meanwhile.
   if (!trajectory.is_searched || trajectory.is_restarted) return false;
+  result->was_localized = trajectory.was_localized;
   result->num_queries = trajectory.localization->num_queries + 1;
   result->cpu_seconds = trajectory.localization->cpu_seconds + cpu_seconds;
   trajectory.localization = *result;

@@ -50,6 +50,11 @@ void Worker::Stop() {
   if (thread_.joinable()) thread_.join();
 }
 
+size_t Worker::NumWaiting() const {
+  const absl::MutexLock lock(&mutex_);
+  return tasks_.size();
+}
+
 double Worker::CpuSeconds() const {
   const absl::MutexLock lock(&mutex_);
   return cpu_seconds_;

@@ -40,6 +40,8 @@ class Worker {
   void WaitUntilIdle() ABSL_LOCKS_EXCLUDED(mutex_);
   // Finishes the running task, drops the others.
   void Stop() ABSL_LOCKS_EXCLUDED(mutex_);
+  // Number of tasks that wait for the running one.
+  [[nodiscard]] size_t NumWaiting() const ABSL_LOCKS_EXCLUDED(mutex_);
   // CPU time of completed tasks [s].
   [[nodiscard]] double CpuSeconds() const ABSL_LOCKS_EXCLUDED(mutex_);
 

@@ -106,7 +106,7 @@ Json LocalizationsJson(const std::vector<LocalizationMoment>& moments,
                     {"verdict", LocalizationVerdictName(result.verdict)},
                     {"reason", result.reason},
                     {"time", FromHostTime(result.time)},
-                    {"T_map_node", ToJson(result.T_map_node)},
+                    {"T_map_tracking", ToJson(result.T_map_tracking)},
                     {"T_map_local", ToJson(result.T_map_local)},
                     {"score", result.score},
                     {"runner_up_score", result.runner_up_score},
@@ -206,11 +206,11 @@ std::string LocalizationText(const LocalizationMoment& moment,
                              const double begin) {
   const LocalizationResult& found = moment.result;
   std::string text = LocalizationVerdictName(found.verdict);
-  if (found.localized && found.T_map_node.has_value()) {
+  if (found.localized && found.T_map_tracking.has_value()) {
     absl::StrAppendFormat(&text, " at (%.2f, %.2f) m, %.1f deg",
-                          found.T_map_node->translation().x(),
-                          found.T_map_node->translation().y(),
-                          kDegrees * found.T_map_node->rotation());
+                          found.T_map_tracking->translation().x(),
+                          found.T_map_tracking->translation().y(),
+                          kDegrees * found.T_map_tracking->rotation());
   }
   absl::StrAppendFormat(
       &text,

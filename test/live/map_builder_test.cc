@@ -14,6 +14,7 @@
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "cartographer/mapping/pose_graph.h"
+#include "cartographer/transform/transform.h"
 #include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/simulation/drive.h"
 #include "cartographer_sdf/simulation/office.h"
@@ -28,7 +29,9 @@ namespace {
 namespace mapping = cartographer::mapping;
 using testing::FeedOdometry;
 using testing::FeedScan;
+using ::testing::IsEmpty;
 using testing::MakeStockOptions;
+using ::testing::Not;
 using testing::SensorIds;
 using ::testing::SizeIs;
 
@@ -121,13 +124,18 @@ class Robot {
   Rigid2 T_odometry_previous_;
 };
 
+// Of a drive along `poses`, the pose at the time of a scan.
+Rigid2 PoseAt(const std::vector<Rigid2>& poses,
+              const cartographer::common::Time time) {
+  const double seconds =
+      cartographer::common::ToSeconds(time - testing::TimeOf(0.));
+  return poses.at(static_cast<size_t>(std::lround(seconds / kTimeStep)) - 1);
+}
+
 // The host drops the first scan, which is its frame nevertheless, and some of
 // the others.
 Rigid2 TruePose(const mapping::TrajectoryNode& node) {
-  const double seconds =
-      cartographer::common::ToSeconds(node.time() - testing::TimeOf(0.));
-  return TheBuilding().poses.at(
-      static_cast<size_t>(std::lround(seconds / kTimeStep)) - 1);
+  return PoseAt(TheBuilding().poses, node.time());
 }
 
 bool IsNear(const Rigid2& a, const Rigid2& b, const double meters,
@@ -183,7 +191,15 @@ TEST(MapBuilderTest, ClosesLoops) {
   const auto submaps = map_builder->pose_graph()->GetAllSubmapData();
   EXPECT_EQ(summary.num_submaps, static_cast<int>(submaps.size()));
   EXPECT_GE(summary.num_injected, 3);
+  EXPECT_EQ(summary.num_waiting_tasks, 0u);
   EXPECT_LT(summary.callback_p99_seconds, 1e-3);
+  const std::vector<RefusedMatch> refused = live->GetRefusedMatches();
+  EXPECT_THAT(refused, Not(IsEmpty()));
+  EXPECT_LE(refused.size(), 200u);
+  for (const RefusedMatch& match : refused) {
+    EXPECT_NE(match.verdict, Verdict::kAccepted);
+    EXPECT_NE(match.verdict, Verdict::kTooLittleOverlap);
+  }
   int num_inter = 0;
   double sum_of_errors = 0.;
   const auto nodes = map_builder->pose_graph()->GetTrajectoryNodes();
@@ -320,6 +336,8 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
       EXPECT_GE(result.num_queries, 2);
       EXPECT_LT(result.distance_driven, 10.);
       ExpectNear(*result.T_map_local, TrueMapPose(poses.front()), 0.3, 0.05);
+      ExpectNear(*result.T_map_tracking,
+                 TrueMapPose(PoseAt(poses, result.time)), 0.3, 0.05);
       {
         const absl::MutexLock lock(&mutex);
         ASSERT_THAT(results, SizeIs(1));
@@ -331,13 +349,69 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
                      trajectory_id)),
                  TrueMapPose(poses.front()), 0.3, 0.05);
       // Kidnapped, as it may think.
-      live->Localize(trajectory_id);
-      EXPECT_FALSE(live->GetLocalization(trajectory_id)->localized);
+      EXPECT_FALSE(result.was_localized);
+      for (int k = 0; k < 2; ++k) {
+        live->Localize(trajectory_id);
+        EXPECT_FALSE(live->GetLocalization(trajectory_id)->localized);
+        EXPECT_TRUE(live->GetLocalization(trajectory_id)->was_localized);
+      }
       map_builder->FinishTrajectory(trajectory_id);
       // While the loaded map's places are read from the file that was left.
       EXPECT_TRUE(std::ifstream(MapPath() + ".places").good());
     }
   }
+}
+
+// As after a kidnapping: the next trajectory goes on where the robot is.
+TEST_F(LocalizationTest, NextTrajectoryStartsWhereItWasFound) {
+  auto stock = MakeStockOptions(std::string(kWithoutOwnSearch) +
+                                "MAP_BUILDER.collate_by_trajectory = true\n");
+  const auto map_builder = CreateMapBuilder(
+      mapping::CreateMapBuilder(stock.map_builder), LiveOptions());
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  const int map_id = map_builder->LoadStateFromFile(MapPath(), true).at(0);
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  EXPECT_FALSE(live->GetStartPose(trajectory_id));
+  const std::vector<Rigid2>& all = TheBuilding().poses;
+  const std::vector<Rigid2> poses(all.begin() + NumMapped() / 2,
+                                  all.begin() + NumMapped() / 2 + 80);
+  size_t num_driven = 0;
+  size_t num_after = 0;
+  Robot(map_builder.get(), trajectory_id, 7).Drive(poses, [&] {
+    ++num_driven;
+    live->WaitUntilIdle();
+    // It is asked for later than the robot was found, while it drives straight
+    // on: local SLAM lags behind turns.
+    if (live->GetLocalization(trajectory_id)->localized) ++num_after;
+    return num_after >= 5 &&
+           IsNear(poses[num_driven - 3], poses[num_driven - 1], 1., 0.01);
+  });
+  ASSERT_GE(num_after, 5u);
+  const std::optional<StartPose> start = live->GetStartPose(trajectory_id);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->to_trajectory_id, map_id);
+  ExpectNear(FromHost(map_builder->pose_graph()
+                          ->GetTrajectoryNodePoses()
+                          .BeginOfTrajectory(map_id)
+                          ->data.global_pose *
+                      start->relative_pose),
+             TrueMapPose(PoseAt(poses, start->time)), 0.3, 0.05);
+  map_builder->FinishTrajectory(trajectory_id);
+
+  auto* const initial =
+      stock.trajectory_builder.mutable_initial_trajectory_pose();
+  initial->set_to_trajectory_id(start->to_trajectory_id);
+  *initial->mutable_relative_pose() =
+      cartographer::transform::ToProto(start->relative_pose);
+  initial->set_timestamp(0);
+  const int next_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  ExpectNear(
+      FromHost(map_builder->pose_graph()->GetLocalToGlobalTransform(next_id)),
+      TrueMapPose(poses.at(num_driven - 1)), 0.3, 0.05);
+  EXPECT_FALSE(live->GetStartPose(next_id));
+  map_builder->FinishTrajectory(next_id);
 }
 
 TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
