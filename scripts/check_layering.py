@@ -58,7 +58,7 @@ TOP = {
              "place_store", "closing", "localization", "config", "proto"],
     "tools": [*CORE, *OFFLINE, "live"],
     # Packages of their own, on top of what is installed.
-    "ros": ["live"],
+    "ros": ["geometry", "live"],
 }
 ALLOWED = {**CORE, **OFFLINE, **TOP}
 

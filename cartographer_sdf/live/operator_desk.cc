@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "cartographer/transform/transform.h"
 #include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/live/worker.h"
 #include "glog/logging.h"
@@ -59,7 +58,12 @@ std::optional<int> OperatorDesk::NewestTrajectory() const {
 std::optional<LocalizationResult> OperatorDesk::GetLocalization(
     const int trajectory_id) const {
   if (live_ == nullptr) return std::nullopt;
-  return live_->GetLocalization(trajectory_id);
+  std::optional<LocalizationResult> result =
+      live_->GetLocalization(trajectory_id);
+  if (result && carried_away_.count(trajectory_id) > 0) {
+    result->was_localized = true;
+  }
+  return result;
 }
 
 std::optional<StartPose> OperatorDesk::GetStartPose(
@@ -68,52 +72,37 @@ std::optional<StartPose> OperatorDesk::GetStartPose(
   return live_->GetStartPose(trajectory_id);
 }
 
-bool OperatorDesk::SearchAgain(const int trajectory_id, const bool restart) {
-  if (live_ == nullptr) return false;
+std::optional<int> OperatorDesk::SearchAgain(
+    const int trajectory_id, const std::optional<TrajectoryActions>& restart) {
+  if (live_ == nullptr) return std::nullopt;
   const std::vector<int> active = ActiveTrajectories(live_);
   if (std::count(active.begin(), active.end(), trajectory_id) == 0) {
-    return false;
+    return std::nullopt;
   }
-  to_restart_.erase(trajectory_id);
-  if (restart) to_restart_.insert(trajectory_id);
-  live_->Localize(trajectory_id);
-  return true;
+  if (!restart) {
+    live_->Localize(trajectory_id);
+    return trajectory_id;
+  }
+  if (!restart->finish(trajectory_id)) return std::nullopt;
+  restart->start();
+  const std::optional<int> next = NewestTrajectory();
+  if (!next) return std::nullopt;
+  // It is searched for already, unless options say otherwise.
+  if (!live_->GetLocalization(*next)) live_->Localize(*next);
+  carried_away_.insert(*next);
+  LOG(INFO) << "trajectory " << trajectory_id << " ended, as the robot was "
+            << "carried away; trajectory " << *next << " is searched for";
+  return next;
 }
 
-int OperatorDesk::SearchForAll(const bool restart) {
+int OperatorDesk::SearchForAll(
+    const std::optional<TrajectoryActions>& restart) {
   if (live_ == nullptr) return 0;
   int count = 0;
   for (const int id : ActiveTrajectories(live_)) {
     if (SearchAgain(id, restart)) ++count;
   }
   return count;
-}
-
-bool OperatorDesk::Restart(const LocalizationResult& result,
-                           const TrajectoryActions& actions) {
-  if (to_restart_.erase(result.trajectory_id) == 0 || !result.localized) {
-    return false;
-  }
-  const std::optional<StartPose> start =
-      live_->GetStartPose(result.trajectory_id);
-  if (!start || !actions.finish(result.trajectory_id)) {
-    LOG(WARNING) << "trajectory " << result.trajectory_id
-                 << " cannot go on where it was found";
-    return false;
-  }
-  mapping::proto::InitialTrajectoryPose initial_pose;
-  initial_pose.set_to_trajectory_id(start->to_trajectory_id);
-  *initial_pose.mutable_relative_pose() =
-      cartographer::transform::ToProto(start->relative_pose);
-  // Relative to the first node: before all of them.
-  initial_pose.set_timestamp(0);
-  actions.start(initial_pose);
-  const std::optional<int> next = NewestTrajectory();
-  if (!next) return false;
-  live_->Localize(*next);
-  LOG(INFO) << "trajectory " << result.trajectory_id << " goes on as " << *next
-            << ", where it was found";
-  return true;
 }
 
 std::vector<SegmentGroup> OperatorDesk::DrawMatches() const {

@@ -3,7 +3,7 @@
 
 // What a node does for its operator, whatever its middleware: keeps results of
 // the searcher's thread for the node's, searches again on request, and lets a
-// trajectory of a robot that was carried away go on where it was found.
+// robot that was carried away begin a new trajectory.
 
 #ifndef CARTOGRAPHER_SDF_LIVE_OPERATOR_DESK_H_
 #define CARTOGRAPHER_SDF_LIVE_OPERATOR_DESK_H_
@@ -27,9 +27,8 @@ namespace cartographer_sdf {
 struct TrajectoryActions {
   // Returns whether the trajectory was active.
   std::function<bool(int trajectory_id)> finish;
-  std::function<void(
-      const cartographer::mapping::proto::InitialTrajectoryPose&)>
-      start;
+  // Without an initial pose.
+  std::function<void()> start;
 };
 
 // All methods but OnLocalization belong to one thread, the node's.
@@ -54,18 +53,15 @@ class OperatorDesk {
   [[nodiscard]] std::optional<LocalizationResult> GetLocalization(
       int trajectory_id) const;
   [[nodiscard]] std::optional<StartPose> GetStartPose(int trajectory_id) const;
-  // Searches for the trajectory again; returns false if it is not active. With
-  // `restart`, Restart() will take effect when it was found.
-  bool SearchAgain(int trajectory_id, bool restart);
-  // Searches for all active trajectories; returns their number.
-  int SearchForAll(bool restart);
-
-  // If that was asked for when the search began: finishes the trajectory and
-  // starts the next one where the robot is now. That one is searched for as
-  // well, as only what is found by the scans of its own nodes ties it to the
-  // map. Returns whether a trajectory was started.
-  bool Restart(const LocalizationResult& result,
-               const TrajectoryActions& actions);
+  // Searches for an active trajectory again and returns it. With actions, for a
+  // robot that was carried away: ends the trajectory, whose local SLAM would
+  // match scans of one place with a submap of another, and starts one in its
+  // place, which is returned; what is found ties it to the map. None if the
+  // trajectory is not active.
+  std::optional<int> SearchAgain(
+      int trajectory_id, const std::optional<TrajectoryActions>& restart);
+  // For all active trajectories; returns their number.
+  int SearchForAll(const std::optional<TrajectoryActions>& restart);
 
   [[nodiscard]] std::vector<SegmentGroup> DrawMatches() const;
   // The CPU share is that since the last call.
@@ -73,7 +69,8 @@ class OperatorDesk {
 
  private:
   LiveMapBuilder* live_ = nullptr;
-  std::set<int> to_restart_;
+  // Trajectories that began after the robot was carried away.
+  std::set<int> carried_away_;
   std::chrono::steady_clock::time_point last_status_ =
       std::chrono::steady_clock::now();
   double last_cpu_seconds_ = 0.;

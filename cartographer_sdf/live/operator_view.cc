@@ -50,7 +50,7 @@ std::string Message(const SearchState state,
   if (state == SearchState::kMapping) return name;
   if (state == SearchState::kLocated) {
     return absl::StrFormat("%s, probability %.4f", name,
-                           Probability(localization->score));
+                           ProbabilitiesOf(*localization).best);
   }
   return absl::StrCat(name, " for ",
                       absl::StrFormat("%.1f", localization->distance_driven),
@@ -81,7 +81,21 @@ std::vector<SegmentGroup> DrawMatches(
   return groups;
 }
 
-double Probability(const double score) { return 1. / (1. + std::exp(-score)); }
+Probabilities ProbabilitiesOf(const LocalizationResult& result) {
+  Probabilities probabilities;
+  if (!result.T_map_tracking) return probabilities;
+  // Scores are log-odds against neither being right.
+  const double best = result.score;
+  if (!result.T_map_runner_up) {
+    probabilities.best = 1. / (1. + std::exp(-best));
+    return probabilities;
+  }
+  const double other = result.runner_up_score;
+  probabilities.best = 1. / (1. + std::exp(-best) + std::exp(other - best));
+  probabilities.runner_up =
+      1. / (1. + std::exp(-other) + std::exp(best - other));
+  return probabilities;
+}
 
 const char* SearchStateName(const SearchState state) {
   switch (state) {

@@ -52,8 +52,13 @@ struct SegmentGroup {
     const std::vector<RefusedMatch>& refused,
     const std::map<SubmapId, Rigid2>& T_map_submap);
 
-// Of log-odds.
-[[nodiscard]] double Probability(double score);
+// Of the best placement and of its runner-up being right, where each excludes
+// the other and both may be wrong; 0 where there is none.
+struct Probabilities {
+  double best = 0.;
+  double runner_up = 0.;
+};
+[[nodiscard]] Probabilities ProbabilitiesOf(const LocalizationResult& result);
 
 enum class SearchState {
   kMapping,    // no map is loaded, or the trajectory is not searched for

@@ -20,11 +20,11 @@ namespace {
 
 namespace mapping = cartographer::mapping;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using testing::FeedScanOfARoom;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 using testing::SensorIds;
-using ::testing::SizeIs;
 
 // A robot that is localised in the map of a small room, by a searcher that is
 // easily convinced.
@@ -79,12 +79,7 @@ class OperatorDeskTest : public ::testing::Test {
               map_builder_->FinishTrajectory(trajectory_id);
               return true;
             },
-            [this](const mapping::proto::InitialTrajectoryPose& pose) {
-              started_.push_back(pose);
-              *stock_.trajectory_builder.mutable_initial_trajectory_pose() =
-                  pose;
-              Start();
-            }};
+            [this] { Start(); }};
   }
 
   testing::TemporaryDirectory directory_;
@@ -94,47 +89,48 @@ class OperatorDeskTest : public ::testing::Test {
   LiveMapBuilder* live_ = nullptr;
   int k_ = 0;
   std::vector<int> finished_;
-  std::vector<mapping::proto::InitialTrajectoryPose> started_;
 };
 
 TEST_F(OperatorDeskTest, ACarriedAwayRobotGoesOnInANewTrajectory) {
   const int id = Start();
   EXPECT_EQ(desk_.NewestTrajectory(), id);
-  const std::optional<LocalizationResult> first = DriveUntilFound(id);
-  ASSERT_TRUE(first);
-  // Nobody asked for it.
-  EXPECT_FALSE(desk_.Restart(*first, Actions()));
-  EXPECT_THAT(finished_, IsEmpty());
+  ASSERT_TRUE(DriveUntilFound(id));
   EXPECT_EQ(StateOf(desk_.GetLocalization(id)), SearchState::kLocated);
+  EXPECT_FALSE(desk_.SearchAgain(id + 1, Actions()));
+  EXPECT_FALSE(desk_.SearchAgain(0, Actions()));  // frozen
+  EXPECT_THAT(finished_, IsEmpty());
 
-  EXPECT_FALSE(desk_.SearchAgain(id + 1, true));
-  EXPECT_FALSE(desk_.SearchAgain(0, true));  // frozen
-  ASSERT_TRUE(desk_.SearchAgain(id, true));
-  EXPECT_EQ(StateOf(desk_.GetLocalization(id)), SearchState::kLost);
-  const std::optional<LocalizationResult> again = DriveUntilFound(id);
-  ASSERT_TRUE(again);
-  EXPECT_TRUE(desk_.Restart(*again, Actions()));
-  EXPECT_THAT(finished_, ::testing::ElementsAre(id));
-  ASSERT_THAT(started_, SizeIs(1));
-  EXPECT_EQ(started_[0].to_trajectory_id(), 0);
-  // Which is searched for, so that it is tied to the map.
-  const std::optional<int> next = desk_.NewestTrajectory();
-  ASSERT_EQ(next, id + 1);
-  ASSERT_TRUE(desk_.GetLocalization(*next));
-  EXPECT_FALSE(desk_.GetLocalization(*next)->localized);
-  EXPECT_FALSE(desk_.GetLocalization(*next)->was_localized);
-  // Once only.
-  EXPECT_FALSE(desk_.Restart(*again, Actions()));
+  EXPECT_EQ(desk_.SearchAgain(id, Actions()), id + 1);
+  EXPECT_THAT(finished_, ElementsAre(id));
+  EXPECT_EQ(desk_.NewestTrajectory(), id + 1);
+  EXPECT_EQ(StateOf(desk_.GetLocalization(id + 1)), SearchState::kLost);
+  EXPECT_FALSE(desk_.SearchAgain(id, Actions()));
+  const std::optional<LocalizationResult> found = DriveUntilFound(id + 1);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->trajectory_id, id + 1);
+  EXPECT_EQ(StateOf(desk_.GetLocalization(id + 1)), SearchState::kLocated);
+  // For the pose graph it is a trajectory like any other, and tied to the map.
+  EXPECT_FALSE(found->was_localized);
+  map_builder_->FinishTrajectory(id + 1);
+  map_builder_->pose_graph()->RunFinalOptimization();
+  int num_ties = 0;
+  for (const auto& constraint : map_builder_->pose_graph()->constraints()) {
+    if (constraint.submap_id.trajectory_id == 0 &&
+        constraint.node_id.trajectory_id == id + 1) {
+      ++num_ties;
+    }
+  }
+  EXPECT_GT(num_ties, 0);
 }
 
 TEST_F(OperatorDeskTest, WithoutTheWishItStaysInItsTrajectory) {
   const int id = Start();
   ASSERT_TRUE(DriveUntilFound(id));
-  EXPECT_EQ(desk_.SearchForAll(false), 1);
+  EXPECT_EQ(desk_.SearchForAll(std::nullopt), 1);
+  EXPECT_EQ(StateOf(desk_.GetLocalization(id)), SearchState::kLost);
   const std::optional<LocalizationResult> again = DriveUntilFound(id);
   ASSERT_TRUE(again);
   EXPECT_TRUE(again->was_localized);
-  EXPECT_FALSE(desk_.Restart(*again, Actions()));
   EXPECT_THAT(finished_, IsEmpty());
   EXPECT_TRUE(desk_.GetStartPose(id));
 }
@@ -163,8 +159,8 @@ TEST(DisabledOperatorDeskTest, SaysThatThereIsNoSearcher) {
   desk.SetMapBuilder(map_builder.get());
   EXPECT_FALSE(desk.IsEnabled());
   EXPECT_FALSE(desk.NewestTrajectory());
-  EXPECT_FALSE(desk.SearchAgain(0, true));
-  EXPECT_EQ(desk.SearchForAll(true), 0);
+  EXPECT_FALSE(desk.SearchAgain(0, std::nullopt));
+  EXPECT_EQ(desk.SearchForAll(std::nullopt), 0);
   EXPECT_FALSE(desk.GetLocalization(0));
   EXPECT_FALSE(desk.GetStartPose(0));
   EXPECT_THAT(desk.DrawMatches(), IsEmpty());

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/live/operator_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
@@ -86,10 +87,18 @@ TEST(OperatorViewTest, ShowsEveryStatusInItsColour) {
   }
 }
 
-TEST(OperatorViewTest, ProbabilityOfLogOdds) {
-  EXPECT_DOUBLE_EQ(Probability(0.), 0.5);
-  EXPECT_NEAR(Probability(std::log(9.)), 0.9, 1e-12);
-  EXPECT_NEAR(Probability(-1000.), 0., 1e-12);
+TEST(OperatorViewTest, ProbabilityOfThisTheOtherOrNeither) {
+  LocalizationResult result;
+  EXPECT_EQ(ProbabilitiesOf(result).best, 0.);
+  result.T_map_tracking = Rigid2();
+  result.score = std::log(9.);
+  EXPECT_NEAR(ProbabilitiesOf(result).best, 0.9, 1e-12);
+  EXPECT_EQ(ProbabilitiesOf(result).runner_up, 0.);
+  result.T_map_runner_up = Rigid2(5., 0., 0.);
+  result.score = std::log(6.);
+  result.runner_up_score = std::log(3.);
+  EXPECT_NEAR(ProbabilitiesOf(result).best, 0.6, 1e-12);
+  EXPECT_NEAR(ProbabilitiesOf(result).runner_up, 0.3, 1e-12);
 }
 
 TEST(OperatorViewTest, TellsStatesApart) {
@@ -123,6 +132,7 @@ TEST(OperatorViewTest, DescribesTheStatus) {
                     Contains(Pair("CPU share", "0.250"))));
   result.localized = true;
   result.score = 10.;
+  result.T_map_tracking = Rigid2();
   const NodeStatus located = DescribeStatus(summary, result, 0.);
   EXPECT_TRUE(located.is_fine);
   EXPECT_THAT(located.message, HasSubstr("probability 1.0000"));

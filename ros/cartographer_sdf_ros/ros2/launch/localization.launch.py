@@ -2,19 +2,39 @@
 # SPDX-License-Identifier: Apache-2.0
 """Cartographer with the searcher around it: localisation in a frozen map."""
 
+import os
+
+from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
+CONFIGURATION_DIRECTORY = os.path.join(
+    get_package_share_directory('cartographer_sdf_ros'), 'configuration_files')
 ARGUMENTS = [
-    DeclareLaunchArgument('configuration_directory'),
-    DeclareLaunchArgument('configuration_basename'),
+    DeclareLaunchArgument('configuration_directory', default_value=CONFIGURATION_DIRECTORY),
+    DeclareLaunchArgument('configuration_basename', default_value='robot_localization.lua'),
     DeclareLaunchArgument('sdf_configuration_basename', default_value='sdf_live.lua'),
     DeclareLaunchArgument('scan', default_value='scan'),
     DeclareLaunchArgument('odometry', default_value='odom'),
     DeclareLaunchArgument('imu', default_value='imu'),
+    DeclareLaunchArgument('use_sim_time', default_value='false'),
+    DeclareLaunchArgument('collect_metrics', default_value='false'),
+    DeclareLaunchArgument('pose_topic', default_value='sdf_pose'),
+    DeclareLaunchArgument('matches_topic', default_value='sdf_matches'),
+    DeclareLaunchArgument('diagnostics_topic', default_value='/diagnostics'),
     DeclareLaunchArgument('map', description='The .pbstream to localise in'),
+    DeclareLaunchArgument(
+        'initial_pose_topic', default_value='',
+        description='For programs that wait for an initial pose; empty: none'),
+    DeclareLaunchArgument(
+        'restart_to_search', default_value='true',
+        description='/sdf_localize ends the trajectory and starts another'),
+]
+PARAMETERS = [
+    'use_sim_time', 'pose_topic', 'initial_pose_topic', 'matches_topic', 'diagnostics_topic',
+    'restart_to_search',
 ]
 
 
@@ -25,10 +45,17 @@ def generate_launch_description():
         executable='cartographer_sdf_node',
         name='cartographer_node',
         output='screen',
+        # glibc keeps what describing a submap frees (docs/live.md).
+        additional_env={
+            'MALLOC_TRIM_THRESHOLD_': '536870912',
+            'MALLOC_MMAP_THRESHOLD_': '33554432',
+        },
+        parameters=[{name: LaunchConfiguration(name) for name in PARAMETERS}],
         arguments=[
             '-configuration_directory', LaunchConfiguration('configuration_directory'),
             '-configuration_basename', LaunchConfiguration('configuration_basename'),
             '-sdf_configuration_basename', LaunchConfiguration('sdf_configuration_basename'),
+            ['-collect_metrics=', LaunchConfiguration('collect_metrics')],
             '-load_state_filename', LaunchConfiguration('map'),
             '-load_frozen_state=true',
         ],
@@ -41,5 +68,6 @@ def generate_launch_description():
         package='cartographer_ros',
         executable='cartographer_occupancy_grid_node',
         name='cartographer_occupancy_grid_node',
+        parameters=[{'use_sim_time': LaunchConfiguration('use_sim_time')}],
         arguments=['-resolution', '0.05'])
     return LaunchDescription([*ARGUMENTS, cartographer, grid])
