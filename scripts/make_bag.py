@@ -159,9 +159,9 @@ def main():
     parser.add_argument("bag")
     parser.add_argument("--piece", action="append", default=[])
     parser.add_argument("--field_of_view", type=float, help="[degrees]")
-    parser.add_argument("--max_range", type=float, default=1000.,
-                        help="[m] of the laser; cartographer_ros drops longer beams, and takes "
-                        "those above its own max_range for free")
+    parser.add_argument("--max_range", type=float, default=30.,
+                        help="[m] of the laser; cartographer_ros drops longer beams, as it does "
+                        "what real lasers report where nothing returns (30)")
     arguments = parser.parse_args()
     scans = read_log(arguments.log)
     first = scans[0][0]

@@ -259,8 +259,8 @@ def write_assets(directory, program, path, bag):
         "-map_filestem", directory / "grids", "-resolution", "0.05",
         log=directory / "grids.log")
     run(tools + "cartographer_assets_writer", "-configuration_directory",
-        os.environ["CARTOGRAPHER_ROS_PREFIX"] + "/share/cartographer_ros/configuration_files",
-        "-configuration_basename", "assets_writer_ros_map.lua", "-bag_filenames", bag,
+        HERE.parent / "ros/cartographer_sdf_ros/configuration_files",
+        "-configuration_basename", "robot_assets_writer.lua", "-bag_filenames", bag,
         "-pose_graph_filename", closed, "-output_file_prefix", directory / "assets_",
         log=directory / "assets.log")
     walls = read_walls(directory / "grids")
