@@ -9,9 +9,11 @@ set -euo pipefail
 
 usage() {
   cat <<END
-usage: scripts/install_dependencies.sh [--development]
+usage: scripts/install_dependencies.sh [--development] [--ros]
   --development  also what the static checks (clang-format, clang-tidy) and
                  learning the score's weights (numpy) need
+  --ros          also what the nodes for ROS 1 and scripts/test_ros.sh need,
+                 besides an installed cartographer_ros
 END
 }
 
@@ -26,6 +28,24 @@ PACKAGES=(
   libgtest-dev libgmock-dev libbenchmark-dev
 )
 DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy)
+ROS_PACKAGES=(
+  # To build.
+  catkin ros-message-generation ros-message-runtime libroscpp-dev
+  libtf2-ros-dev libtf2-eigen-dev libtf2-dev libgeometry-msgs-dev
+  libnav-msgs-dev libsensor-msgs-dev libvisualization-msgs-dev
+  libdiagnostic-msgs-dev libstd-srvs-dev libstd-msgs-dev libpcl-conversions-dev
+  librosbag-dev libroslib-dev liburdf-dev liburdfdom-headers-dev
+  ros-geometry-msgs ros-std-msgs ros-sensor-msgs ros-nav-msgs
+  ros-visualization-msgs ros-diagnostic-msgs ros-std-srvs ros-actionlib-msgs
+  ros-tf2-msgs ros-roscpp-msg ros-rosgraph-msgs
+  # To run: the master, launch files, bags, and scripts that listen.
+  python3-rosbag python3-rosmaster python3-roslaunch python3-rosservice
+  python3-rosnode python3-rostopic rosout python3-tf2-msgs python3-nav-msgs
+  python3-sensor-msgs python3-std-srvs python3-diagnostic-msgs
+  python3-visualization-msgs python3-rosgraph
+  # The network of the test.
+  iproute2 util-linux
+)
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -35,6 +55,7 @@ fail() {
 while (($# > 0)); do
   case "$1" in
     --development) PACKAGES+=("${DEVELOPMENT_PACKAGES[@]}") ;;
+    --ros) PACKAGES+=("${ROS_PACKAGES[@]}") ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
   esac

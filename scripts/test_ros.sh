@@ -55,6 +55,25 @@ unshare -rn true 2>/dev/null || unshare -n true 2>/dev/null ||
 WORK="$(mktemp -d)"
 trap 'rm -rf "${WORK}"' EXIT
 
+# Whether a workspace with the checkout and with ros/ has the three packages, in
+# ROS 1 and in ROS 2, to catkin and, where it is installed, to colcon.
+check_workspace() {
+  local version expected="cartographer_sdf cartographer_sdf_msgs cartographer_sdf_ros"
+  mkdir -p "${WORK}/whole/src"
+  ln -s "${SOURCE_DIR}" "${WORK}/whole/src/cartographer_sdf"
+  ln -s "${SOURCE_DIR}/ros" "${WORK}/whole/src/ros"
+  for version in 1 2; do
+    [[ "$(ROS_VERSION="${version}" /usr/bin/python3 -c '
+import sys
+from catkin_pkg.topological_order import topological_order
+print(*[package.name for _, package in topological_order(sys.argv[1])])
+' "${WORK}/whole/src")" == "${expected}" ]] || return 1
+    command -v colcon >/dev/null || continue
+    [[ "$(cd "${WORK}/whole" && ROS_VERSION="${version}" colcon list --names-only |
+      sort | tr '\n' ' ')" == "${expected} " ]] || return 1
+  done
+}
+
 build() {
   cmake --install "${BUILD_DIR}" --prefix "${WORK}/prefix" >/dev/null
   mkdir -p "${WORK}/workspace/src"
@@ -67,6 +86,11 @@ build() {
       -DPYTHON_EXECUTABLE=/usr/bin/python3 -DCMAKE_BUILD_TYPE=Release)
 }
 
+if ! check_workspace; then
+  echo "test_ros.sh: a workspace does not have the three packages" >&2
+  exit 1
+fi
+echo "ok   a workspace of ROS 1 or ROS 2 has the three packages"
 if ! build >"${WORK}/build.log" 2>&1; then
   cat "${WORK}/build.log" >&2
   echo "test_ros.sh: the packages in ros/ do not build" >&2
