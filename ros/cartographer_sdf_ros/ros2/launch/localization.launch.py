@@ -9,6 +9,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 
 CONFIGURATION_DIRECTORY = os.path.join(
     get_package_share_directory('cartographer_sdf_ros'), 'configuration_files')
@@ -33,8 +34,12 @@ ARGUMENTS = [
         description='/sdf_localize ends the trajectory and starts another'),
 ]
 PARAMETERS = [
-    'use_sim_time', 'pose_topic', 'initial_pose_topic', 'matches_topic', 'diagnostics_topic',
-    'restart_to_search',
+    ('use_sim_time', bool),
+    ('pose_topic', str),
+    ('matches_topic', str),
+    ('diagnostics_topic', str),
+    ('initial_pose_topic', str),
+    ('restart_to_search', bool),
 ]
 
 
@@ -50,7 +55,8 @@ def generate_launch_description():
             'MALLOC_TRIM_THRESHOLD_': '536870912',
             'MALLOC_MMAP_THRESHOLD_': '33554432',
         },
-        parameters=[{name: LaunchConfiguration(name) for name in PARAMETERS}],
+        parameters=[{name: ParameterValue(LaunchConfiguration(name), value_type=kind)
+                     for name, kind in PARAMETERS}],
         arguments=[
             '-configuration_directory', LaunchConfiguration('configuration_directory'),
             '-configuration_basename', LaunchConfiguration('configuration_basename'),

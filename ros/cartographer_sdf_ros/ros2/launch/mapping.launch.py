@@ -9,6 +9,7 @@ from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
 
 CONFIGURATION_DIRECTORY = os.path.join(
     get_package_share_directory('cartographer_sdf_ros'), 'configuration_files')
@@ -28,7 +29,12 @@ ARGUMENTS = [
         'save_map', default_value='',
         description='Where the map goes as the node ends; nowhere if empty'),
 ]
-PARAMETERS = ['use_sim_time', 'pose_topic', 'matches_topic', 'diagnostics_topic']
+PARAMETERS = [
+    ('use_sim_time', bool),
+    ('pose_topic', str),
+    ('matches_topic', str),
+    ('diagnostics_topic', str),
+]
 
 
 def generate_launch_description():
@@ -43,7 +49,8 @@ def generate_launch_description():
             'MALLOC_TRIM_THRESHOLD_': '536870912',
             'MALLOC_MMAP_THRESHOLD_': '33554432',
         },
-        parameters=[{name: LaunchConfiguration(name) for name in PARAMETERS}],
+        parameters=[{name: ParameterValue(LaunchConfiguration(name), value_type=kind)
+                     for name, kind in PARAMETERS}],
         arguments=[
             '-configuration_directory', LaunchConfiguration('configuration_directory'),
             '-configuration_basename', LaunchConfiguration('configuration_basename'),
