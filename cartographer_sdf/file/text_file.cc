@@ -19,6 +19,8 @@
 namespace cartographer_sdf {
 namespace {
 
+constexpr uintmax_t kMaxTableSize = uintmax_t{1} << 30;
+
 // A field as error messages show it.
 std::string Quoted(const absl::string_view field) {
   constexpr size_t kMaxLength = 40;
@@ -85,6 +87,11 @@ absl::StatusOr<std::vector<TextLine>> ReadLines(const std::string& path) {
   if (!std::filesystem::is_regular_file(status)) {
     return absl::InvalidArgumentError(
         absl::StrCat("cannot read ", path, ": not a regular file"));
+  }
+  const uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > kMaxTableSize) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("cannot read ", path, ": it is larger than 1 GiB"));
   }
   std::ifstream file(path, std::ios::binary);
   std::vector<TextLine> lines;

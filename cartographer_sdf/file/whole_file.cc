@@ -6,28 +6,37 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <iostream>
 
-#include "absl/strings/str_cat.h"
+#include "cartographer_sdf/file/pending_file.h"
 
 namespace cartographer_sdf {
+namespace {
+
+absl::Status WriteToStandardOutput(const std::string& content) {
+  std::cout.flush();
+  size_t written = 0;
+  while (written < content.size()) {
+    const ssize_t count = write(STDOUT_FILENO, content.data() + written,
+                                content.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) {
+      return absl::ErrnoToStatus(errno, "cannot write to the standard output");
+    }
+    written += static_cast<size_t>(count);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
 
 absl::Status WriteWholeFile(const std::string& path,
                             const std::string& content) {
-  const std::string temporary = absl::StrCat(path, ".", getpid(), ".part");
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  if (!file.fail() && std::rename(temporary.c_str(), path.c_str()) == 0) {
-    return absl::OkStatus();
-  }
-  const std::string reason = errno != 0 ? std::strerror(errno) : "write error";
-  std::remove(temporary.c_str());
-  return absl::UnavailableError(
-      absl::StrCat("cannot write ", path, ": ", reason));
+  if (path == kStandardOutput) return WriteToStandardOutput(content);
+  absl::StatusOr<PendingFile> file = PendingFile::Create(path);
+  if (!file.ok()) return file.status();
+  const absl::Status status = file->Write(content);
+  return status.ok() ? file->Commit() : status;
 }
 
 }  // namespace cartographer_sdf

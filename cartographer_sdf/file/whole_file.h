@@ -10,8 +10,11 @@
 
 namespace cartographer_sdf {
 
-// Writes a temporary file beside `path` and renames it, so that `path` always
-// holds the complete old file or the complete new one. Errors name the path.
+// Stands for the standard output where a path is expected.
+constexpr char kStandardOutput[] = "-";
+
+// Writes a PendingFile, so that `path` always holds the complete old file or
+// the complete new one; or to the standard output. Errors name the path.
 [[nodiscard]] absl::Status WriteWholeFile(const std::string& path,
                                           const std::string& content);
 

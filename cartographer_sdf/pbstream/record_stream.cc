@@ -3,16 +3,12 @@
 
 #include "cartographer_sdf/pbstream/record_stream.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <filesystem>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -22,9 +18,8 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr uint64_t kMagic = 0x7b1d1f7b5bf501db;
+constexpr uint64_t kGzipMagic = 0x8b1f;
 constexpr int kWordSize = 8;
-// Size limit of protocol buffers.
-constexpr int64_t kMaxRecordSize = std::numeric_limits<int32_t>::max();
 constexpr int kChunkSize = 1 << 16;
 // For zlib: the largest window, with gzip header and trailer.
 constexpr int kGzipWindowBits = 15 + 16;
@@ -89,18 +84,23 @@ absl::StatusOr<RecordReader> RecordReader::Open(const std::string& path) {
     return absl::ErrnoToStatus(errno == 0 ? EIO : errno,
                                absl::StrCat("cannot open ", path));
   }
-  std::array<char, kWordSize> word;
+  std::array<char, kWordSize> word{};
   if (reader.size_ < kWordSize ||
       !reader.ReadBytes(kWordSize, word.data()).ok() ||
       DecodeWord(word) != kMagic) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        path, " is not a .pbstream file (",
-        reader.size_ == 0 ? "it is empty" : "bad magic number", ")"));
+    const bool is_gzip = (DecodeWord(word) & 0xffff) == kGzipMagic;
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, " is not a .pbstream file (",
+                     reader.size_ == 0 ? "it is empty"
+                     : is_gzip ? "it is compressed as a whole: gunzip it first"
+                               : "bad magic number",
+                     ")"));
   }
   return reader;
 }
 
-absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
+absl::StatusOr<bool> RecordReader::Read(std::string* const record,
+                                        const int64_t max_size) {
   record->clear();
   const int64_t remaining = size_ - position_;
   if (remaining == 0) return false;
@@ -119,7 +119,7 @@ absl::StatusOr<bool> RecordReader::Read(std::string* const record) {
         path_, " is truncated: record ", num_records_, " has ", length,
         " bytes, but only ", size_ - position_, " are left in the file"));
   }
-  status = Inflate(static_cast<int64_t>(length), record);
+  status = Inflate(static_cast<int64_t>(length), max_size, record);
   if (!status.ok()) return status;
   return true;
 }
@@ -134,6 +134,7 @@ absl::Status RecordReader::ReadBytes(const int64_t count, char* const bytes) {
 }
 
 absl::Status RecordReader::Inflate(int64_t compressed_size,
+                                   const int64_t max_size,
                                    std::string* const record) {
   z_stream& stream = *stream_;
   CHECK_EQ(inflateReset(&stream), Z_OK);
@@ -155,11 +156,11 @@ absl::Status RecordReader::Inflate(int64_t compressed_size,
     stream.next_out = reinterpret_cast<Bytef*>(output.data());
     stream.avail_out = kChunkSize;
     result = inflate(&stream, Z_NO_FLUSH);
-    const size_t produced = kChunkSize - stream.avail_out;
-    if (static_cast<int64_t>(record->size() + produced) > kMaxRecordSize) {
-      return Corrupted("is larger than 2 GiB");
+    record->append(output.data(), kChunkSize - stream.avail_out);
+    if (static_cast<int64_t>(record->size()) > max_size) {
+      return Corrupted(
+          absl::StrCat("is larger than ", (max_size >> 20) + 1, " MiB"));
     }
-    record->append(output.data(), produced);
   }
   // Neither input nor output is left.
   if (result == Z_BUF_ERROR) return Corrupted("ends too early");
@@ -178,77 +179,15 @@ absl::Status RecordReader::Corrupted(const absl::string_view problem) const {
                                           num_records_, " ", problem));
 }
 
-RecordWriter::RecordWriter() : stream_(NewDeflateStream()) {}
+RecordWriter::RecordWriter(PendingFile file)
+    : file_(std::move(file)), stream_(NewDeflateStream()) {}
 
 absl::StatusOr<RecordWriter> RecordWriter::Open(const std::string& path) {
-  RecordWriter writer;
-  writer.path_ = path;
-  writer.target_path_ = path;
-  std::error_code error;
-  if (std::filesystem::is_symlink(path, error)) {
-    const std::filesystem::path target =
-        std::filesystem::weakly_canonical(path, error);
-    if (!error) writer.target_path_ = target.string();
-  }
-  absl::Status status = writer.CreateTemporaryFile();
+  absl::StatusOr<PendingFile> file = PendingFile::Create(path);
+  if (!file.ok()) return file.status();
+  const absl::Status status = file->Write(EncodeWord(kMagic));
   if (!status.ok()) return status;
-  status = writer.WriteBytes(EncodeWord(kMagic));
-  if (!status.ok()) return status;
-  return writer;
-}
-
-RecordWriter::RecordWriter(RecordWriter&& other) noexcept
-    : path_(std::move(other.path_)),
-      target_path_(std::move(other.target_path_)),
-      temporary_path_(std::move(other.temporary_path_)),
-      file_descriptor_(std::exchange(other.file_descriptor_, -1)),
-      stream_(std::move(other.stream_)) {}
-
-RecordWriter::~RecordWriter() {
-  if (file_descriptor_ < 0) return;
-  close(file_descriptor_);
-  unlink(temporary_path_.c_str());
-}
-
-absl::Status RecordWriter::CreateTemporaryFile() {
-  const std::string problem = absl::StrCat("cannot write ", path_);
-  struct stat existing = {};
-  const bool exists = stat(target_path_.c_str(), &existing) == 0;
-  if (exists && !S_ISREG(existing.st_mode)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(problem, ": not a regular file"));
-  }
-  if (exists && access(target_path_.c_str(), W_OK) != 0) {
-    return absl::ErrnoToStatus(errno, problem);
-  }
-  // Skips names of files left by another writer of this process or by a dead
-  // process.
-  constexpr int kMaxAttempts = 1000;
-  for (int i = 0; i < kMaxAttempts; ++i) {
-    temporary_path_ = absl::StrCat(target_path_, ".tmp-", getpid(), "-", i);
-    file_descriptor_ = open(temporary_path_.c_str(),
-                            O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file_descriptor_ >= 0 || errno != EEXIST) break;
-  }
-  if (file_descriptor_ < 0) return absl::ErrnoToStatus(errno, problem);
-  if (exists && fchmod(file_descriptor_, existing.st_mode & 07777) != 0) {
-    return absl::ErrnoToStatus(errno, problem);
-  }
-  return absl::OkStatus();
-}
-
-absl::Status RecordWriter::WriteBytes(const std::string& bytes) {
-  size_t written = 0;
-  while (written < bytes.size()) {
-    const ssize_t count =
-        write(file_descriptor_, bytes.data() + written, bytes.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) {
-      return absl::ErrnoToStatus(errno, absl::StrCat("cannot write ", path_));
-    }
-    written += static_cast<size_t>(count);
-  }
-  return absl::OkStatus();
+  return RecordWriter(*std::move(file));
 }
 
 // zlib's gzip header has no time stamp by default, so the output is
@@ -272,25 +211,16 @@ absl::Status RecordWriter::Write(const std::string& record) {
 }
 
 absl::Status RecordWriter::WriteCompressed(const std::string& member) {
-  CHECK_GE(file_descriptor_, 0) << "written after Commit()";
-  return WriteBytes(EncodeWord(member.size()) + member);
+  const absl::Status status = file_.Write(EncodeWord(member.size()));
+  return status.ok() ? file_.Write(member) : status;
 }
 
-absl::Status RecordWriter::Commit() {
-  CHECK_GE(file_descriptor_, 0) << "committed twice";
-  const std::string problem = absl::StrCat("cannot write ", path_);
-  // Without it, a crash of the machine could leave an empty file under the new
-  // name.
-  if (fsync(file_descriptor_) != 0 && errno != EINVAL) {
-    return absl::ErrnoToStatus(errno, problem);
-  }
-  const bool closed = close(std::exchange(file_descriptor_, -1)) == 0;
-  if (!closed || rename(temporary_path_.c_str(), target_path_.c_str()) != 0) {
-    const absl::Status status = absl::ErrnoToStatus(errno, problem);
-    unlink(temporary_path_.c_str());
-    return status;
-  }
-  return absl::OkStatus();
+absl::Status RecordWriter::Commit() { return file_.Commit(); }
+
+bool HasMagicNumber(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, kWordSize> word;
+  return file.read(word.data(), kWordSize) && DecodeWord(word) == kMagic;
 }
 
 }  // namespace cartographer_sdf

@@ -10,12 +10,14 @@
 
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "cartographer_sdf/file/pending_file.h"
 
 // zlib's z_stream.
 struct z_stream_s;
@@ -25,6 +27,9 @@ namespace cartographer_sdf {
 // Created once per file: most records are tiny, and a stream is not.
 using ZlibStream = std::unique_ptr<z_stream_s, void (*)(z_stream_s*)>;
 
+// The size limit of protocol buffers.
+constexpr int64_t kMaxRecordSize = std::numeric_limits<int32_t>::max();
+
 class RecordReader {
  public:
   // Checks the magic number. Errors name the path.
@@ -33,8 +38,10 @@ class RecordReader {
 
   // Reads the next record; false at the end of the file, an error if the file
   // is truncated or corrupted. Memory grows with the decompressed size, not
-  // with the length that a record claims.
-  [[nodiscard]] absl::StatusOr<bool> Read(std::string* record);
+  // with the length that a record claims, up to `max_size`; what is larger is
+  // an error, too.
+  [[nodiscard]] absl::StatusOr<bool> Read(std::string* record,
+                                          int64_t max_size = kMaxRecordSize);
   // The last record read, as in the file: its gzip member.
   [[nodiscard]] const std::string& compressed() const { return compressed_; }
 
@@ -50,7 +57,7 @@ class RecordReader {
   RecordReader();
 
   [[nodiscard]] absl::Status ReadBytes(int64_t count, char* bytes);
-  [[nodiscard]] absl::Status Inflate(int64_t compressed_size,
+  [[nodiscard]] absl::Status Inflate(int64_t compressed_size, int64_t max_size,
                                      std::string* record);
 
   std::string path_;
@@ -62,18 +69,13 @@ class RecordReader {
   int num_records_ = 0;
 };
 
-// Writes to a temporary file beside `path`; Commit() renames it. Without a
-// commit, the destructor leaves nothing behind. The same records give the same
-// bytes.
+// Writes a PendingFile: the path has the old content or all of the new one. The
+// same records give the same bytes.
 class RecordWriter {
  public:
-  // Fails if the target cannot be replaced: a directory, a device, a
-  // write-protected file. Follows symbolic links.
+  // Fails if the target cannot be replaced, see PendingFile.
   [[nodiscard]] static absl::StatusOr<RecordWriter> Open(
       const std::string& path);
-  RecordWriter(RecordWriter&& other) noexcept;
-  RecordWriter& operator=(RecordWriter&&) = delete;
-  ~RecordWriter();
 
   // After an error or Commit(), the writer must not be used any more.
   [[nodiscard]] absl::Status Write(const std::string& record);
@@ -82,20 +84,23 @@ class RecordWriter {
   [[nodiscard]] absl::Status WriteCompressed(const std::string& member);
   [[nodiscard]] absl::Status Commit();
 
- private:
-  RecordWriter();
+  [[nodiscard]] const std::string& path() const { return file_.path(); }
+  // What has been written, until it is committed.
+  [[nodiscard]] const std::string& temporary_path() const {
+    return file_.temporary_path();
+  }
 
-  [[nodiscard]] absl::Status CreateTemporaryFile();
-  [[nodiscard]] absl::Status WriteBytes(const std::string& bytes);
+ private:
+  explicit RecordWriter(PendingFile file);
+
   [[nodiscard]] std::string Deflate(const std::string& record);
 
-  // The path as given, for messages, and the path with links resolved.
-  std::string path_;
-  std::string target_path_;
-  std::string temporary_path_;
-  int file_descriptor_ = -1;
+  PendingFile file_;
   ZlibStream stream_;
 };
+
+// Whether a file begins like a .pbstream; false if it cannot be read.
+[[nodiscard]] bool HasMagicNumber(const std::string& path);
 
 }  // namespace cartographer_sdf
 

@@ -146,6 +146,8 @@ TEST(RecordStreamTest, RefusesForeignFiles) {
               EndsWith("not a .pbstream file (bad magic number)"));
   EXPECT_THAT(ErrorOfBytes("P5 640 480 255 ......"),
               EndsWith("not a .pbstream file (bad magic number)"));
+  EXPECT_THAT(ErrorOfBytes(Gzipped(MagicNumber())),
+              EndsWith("(it is compressed as a whole: gunzip it first)"));
   EXPECT_EQ(ErrorOfBytes(MagicNumber()), "");
 }
 
@@ -283,9 +285,9 @@ TEST(RecordStreamTest, SaysWhyItCannotWrite) {
   const auto error = [](const std::string& path) {
     return std::string(RecordWriter::Open(path).status().message());
   };
-  EXPECT_EQ(
-      error(directory.File("no/a")),
-      "cannot write " + directory.File("no/a") + ": No such file or directory");
+  EXPECT_EQ(error(directory.File("no/a")),
+            "cannot write " + directory.File("no/a") +
+                ": there is no directory " + directory.File("no"));
   EXPECT_EQ(error(directory.path()),
             "cannot write " + directory.path() + ": not a regular file");
   EXPECT_EQ(error("/dev/null"), "cannot write /dev/null: not a regular file");
