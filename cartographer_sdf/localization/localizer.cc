@@ -4,11 +4,13 @@
 #include "cartographer_sdf/localization/localizer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/geometry/evenly_spaced.h"
+#include "cartographer_sdf/localization/compared_numbers.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -30,10 +32,28 @@ std::string DescribeWhere(const MapLayout& map,
   const PairPose& pair = matches[strongest].pair;
   const Rigid2 T_map_submap =
       map.T_map_submap.at(pair.reference) * pair.T_reference_query;
-  return absl::StrFormat("(%.1f, %.1f) m in submap %d,%d",
+  constexpr double kDegree = M_PI / 180.;
+  // Half-turn rivals differ in nothing else.
+  return absl::StrFormat("(%.1f, %.1f) m, %.0f deg in submap %d,%d",
                          T_map_submap.translation().x(),
                          T_map_submap.translation().y(),
+                         T_map_submap.rotation() / kDegree,
                          pair.reference.trajectory, pair.reference.index);
+}
+
+std::string DescribeTooLittle(const double area, const double min_area) {
+  const ComparedNumbers compared = FormatCompared(area, min_area, 0);
+  return absl::StrFormat("too little was seen: %s m2, %s are needed",
+                         compared.number, compared.threshold);
+}
+
+std::string DescribeLowScore(const double score, const double min_score,
+                             const std::string& where) {
+  const ComparedNumbers compared = FormatCompared(score, min_score, 2);
+  return absl::StrFormat(
+      "too little agrees: score %s at %s, %s is needed; more of the place must "
+      "be seen",
+      compared.number, where, compared.threshold);
 }
 
 class Localizer {
@@ -55,8 +75,7 @@ class Localizer {
     if (task_.query.places->empty() ||
         area < task_.placement.min_observed_area) {
       Refuse(LocalizationVerdict::kTooLittleSeen,
-             absl::StrFormat("too little was seen: %.0f m2, %.0f are needed",
-                             area, task_.placement.min_observed_area));
+             DescribeTooLittle(area, task_.placement.min_observed_area));
     } else {
       Search();
     }
@@ -223,10 +242,7 @@ class Localizer {
                              where));
     } else if (best.score < options.min_score) {
       Refuse(LocalizationVerdict::kUncertain,
-             absl::StrFormat(
-                 "too little agrees: score %.2f at %s, %.2f is needed; more of "
-                 "the place must be seen",
-                 best.score, where, options.min_score));
+             DescribeLowScore(best.score, options.min_score, where));
     } else if (fraction > options.max_contradicting_fraction) {
       Refuse(LocalizationVerdict::kContradicted,
              absl::StrFormat("contradicted: alike at %s, but the surroundings "
