@@ -294,7 +294,7 @@ bool IsDoubtful(const AuditVerdict verdict) {
 
 absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
                                const AuditOptions& options,
-                               const std::string& path,
+                               const MapSource& source,
                                const std::set<int>& frozen_trajectories,
                                const Executor& executor,
                                const StageCallback& on_stage) {
@@ -302,10 +302,12 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
   CHECK_EQ(Validate(options), "");
   const MatchOptions& match = loop_closing.recognition.match;
   CHECK(match.method == Method::kSdf) << "the paper's method verifies nothing";
+  absl::Status status = CheckHasTrajectories(source.path, frozen_trajectories);
+  if (!status.ok()) return status;
   Audit audit;
   StageClock clock(on_stage, &audit.stage_seconds);
   absl::StatusOr<DescribedMap> map =
-      DescribeMap(loop_closing.place, match, path, executor,
+      DescribeMap(loop_closing.place, match, source, executor,
                   clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   const PoseGraph& pose_graph = map->state.pose_graph;

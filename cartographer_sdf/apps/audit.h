@@ -122,7 +122,7 @@ struct Audit {
 // depend on the number of threads.
 [[nodiscard]] absl::StatusOr<Audit> AuditMap(
     const LoopClosingOptions& loop_closing, const AuditOptions& options,
-    const std::string& path, const std::set<int>& frozen_trajectories,
+    const MapSource& source, const std::set<int>& frozen_trajectories,
     const Executor& executor, const StageCallback& on_stage = {});
 
 }  // namespace cartographer_sdf

@@ -18,16 +18,18 @@ std::string Validate(const LoopClosingOptions& options) {
 }
 
 absl::StatusOr<LoopClosingResult> CloseLoops(
-    const LoopClosingOptions& options, const std::string& path,
+    const LoopClosingOptions& options, const MapSource& source,
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage) {
   CHECK_EQ(Validate(options), "");
   CHECK(options.recognition.match.method == Method::kSdf)
       << "the paper's method verifies nothing";
+  absl::Status status = CheckHasTrajectories(source.path, frozen_trajectories);
+  if (!status.ok()) return status;
   LoopClosingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
   absl::StatusOr<DescribedMap> map =
-      DescribeMap(options.place, options.recognition.match, path, executor,
+      DescribeMap(options.place, options.recognition.match, source, executor,
                   clock.Begin("read and describe"), PointClouds::kKeep);
   if (!map.ok()) return map.status();
   result.num_places = map->places.size();

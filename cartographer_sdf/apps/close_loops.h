@@ -40,10 +40,10 @@ struct LoopClosingResult {
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Fails if the file cannot be read. Frozen trajectories stay fixed. The
-// recognition's method must be kSdf.
+// Fails if the file cannot be read or lacks one of the frozen trajectories,
+// which stay fixed. The recognition's method must be kSdf.
 [[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
-    const LoopClosingOptions& options, const std::string& path,
+    const LoopClosingOptions& options, const MapSource& source,
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage = {});
 

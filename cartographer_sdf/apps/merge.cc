@@ -205,29 +205,37 @@ void JoinAndClose(const FoldCheckOptions& options,
   result->state = std::move(joined.state);
 }
 
-// Reads all sessions. Only the first map can be frozen; fails as soon as
-// another one is.
+std::vector<std::string> PathsOf(const std::vector<MapSource>& sources) {
+  std::vector<std::string> paths;
+  for (const MapSource& source : sources) paths.push_back(source.path);
+  return paths;
+}
+
+// Only the first map can be frozen.
+absl::Status CheckFrozen(const std::string& first_path,
+                         const std::set<int>& frozen_trajectories) {
+  if (frozen_trajectories.empty()) return absl::OkStatus();
+  const absl::StatusOr<std::vector<int>> freezable =
+      ReadTrajectories(first_path);
+  if (!freezable.ok()) return freezable.status();
+  const int last = *frozen_trajectories.rbegin();
+  if (last < static_cast<int>(freezable->size())) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "trajectory ", last, " is not of the first map, ", first_path,
+      ", and cannot be frozen: only one map can stay"));
+}
+
 absl::StatusOr<std::vector<Session>> ReadSessions(
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
-    const std::vector<std::string>& paths,
-    const std::set<int>& frozen_trajectories, const Executor& executor,
+    const std::vector<MapSource>& sources, const Executor& executor,
     StageClock* const clock) {
   std::vector<Session> sessions;
-  for (const std::string& path : paths) {
-    absl::StatusOr<Session> session =
-        DescribeSession(stages, scan_places, path, std::nullopt, executor,
-                        clock->Begin(absl::StrCat("read and describe ", path)));
+  for (const MapSource& source : sources) {
+    absl::StatusOr<Session> session = DescribeSession(
+        stages, scan_places, source, std::nullopt, executor,
+        clock->Begin(absl::StrCat("read and describe ", source.path)));
     if (!session.ok()) return session.status();
     sessions.push_back(*std::move(session));
-    if (sessions.size() > 1) continue;
-    const int num_freezable =
-        static_cast<int>(sessions.front().map.state.trajectories.size());
-    for (const int trajectory : frozen_trajectories) {
-      if (trajectory < num_freezable) continue;
-      return absl::InvalidArgumentError(absl::StrCat(
-          "trajectory ", trajectory, " is not of the first map, ",
-          paths.front(), ", and cannot be frozen: only one map can stay"));
-    }
   }
   return sessions;
 }
@@ -273,17 +281,19 @@ std::string FindRefusal(const MergingResult& result,
 absl::StatusOr<MergingResult> MergeSessions(
     const FoldCheckOptions& options, const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
-    const std::vector<std::string>& paths,
+    const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage) {
   CHECK_EQ(Validate(options), "");
-  CHECK_GE(paths.size(), 2u);
-  const absl::Status status = CheckPaths(paths);
+  CHECK_GE(sources.size(), 2u);
+  const std::vector<std::string> paths = PathsOf(sources);
+  absl::Status status = CheckPaths(paths);
+  if (status.ok()) status = CheckFrozen(paths.front(), frozen_trajectories);
   if (!status.ok()) return status;
   MergingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
-  const absl::StatusOr<std::vector<Session>> sessions = ReadSessions(
-      scan_places, stages, paths, frozen_trajectories, executor, &clock);
+  const absl::StatusOr<std::vector<Session>> sessions =
+      ReadSessions(scan_places, stages, sources, executor, &clock);
   if (!sessions.ok()) return sessions.status();
   result.links =
       LinkSessions(localization, stages, *sessions, executor, &clock);

@@ -60,11 +60,11 @@ struct MergingResult {
 // the largest connected group, on ties the first. The map frame is that of the
 // first session in it. Frozen trajectories, numbered in the order of all
 // sessions' trajectories, stay fixed; all must belong to that first session.
-// Fails if a file cannot be read.
+// Fails if a file cannot be read, or if there is no such trajectory.
 [[nodiscard]] absl::StatusOr<MergingResult> MergeSessions(
     const FoldCheckOptions& options, const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
-    const std::vector<std::string>& paths,
+    const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,
     const StageCallback& on_stage = {});
 

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "cartographer_sdf/localization/compared_numbers.h"
+#include "cartographer_sdf/place/surface_model.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -77,27 +80,66 @@ void AddPlaces(const Session& session, const MapPart& part,
   }
 }
 
+// Why little or nothing can be found in a map, and what helps; empty if nothing
+// is the matter.
+std::string ExplainBareMap(const DescribedMap& map, const double min_area) {
+  if (map.state.submaps.empty()) {
+    return "; the map has no submaps: drive farther, or save it with "
+           "unfinished "
+           "submaps";
+  }
+  double area = 0.;
+  for (const auto& [id, place] : map.places)
+    area += ObservedArea(place.surface);
+  if (area >= min_area) return "";
+  const ComparedNumbers compared = FormatCompared(area, min_area, 0);
+  return absl::StrCat("; the map shows too little: ", compared.number, " m2, ",
+                      compared.threshold, " are needed");
+}
+
+bool HasInterSubmapConstraint(const PoseGraph& pose_graph) {
+  return std::any_of(pose_graph.constraints.begin(),
+                     pose_graph.constraints.end(),
+                     [](const Constraint& constraint) {
+                       return constraint.tag == Constraint::Tag::kInterSubmap;
+                     });
+}
+
+// What the reason of a refusal lacks: what is the matter with the map.
+std::string ExplainRefusal(const Localization& result, const DescribedMap& map,
+                           const double min_area) {
+  if (result.verdict == LocalizationVerdict::kNothingAlike) {
+    return ExplainBareMap(map, min_area);
+  }
+  if (result.verdict == LocalizationVerdict::kAmbiguous &&
+      !HasInterSubmapConstraint(map.state.pose_graph)) {
+    return "; the map has no loop closures: where it drifted, a place is in it "
+           "more than once until close_loops has closed them";
+  }
+  return "";
+}
+
 }  // namespace
 
 absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
                                         const ScanPlaceOptions& scan_places,
-                                        const std::string& path,
+                                        const MapSource& source,
                                         const std::optional<TimeWindow>& window,
                                         const Executor& executor,
                                         const ProgressCallback& on_progress) {
   const MatchOptions& match = options.recognition.match;
   if (window) {
     const absl::StatusOr<DescribedMap> read =
-        ReadMapWithScans(path, on_progress);
+        ReadMapWithScans(source, on_progress);
     if (!read.ok()) return read.status();
     ScanMap scans = DescribeScans(scan_places, options.place, match, *read,
                                   *window, executor);
-    return Session{path, std::move(scans.map), std::move(scans.grids)};
+    return Session{source.path, std::move(scans.map), std::move(scans.grids)};
   }
   absl::StatusOr<DescribedMap> map = DescribeMap(
-      options.place, match, path, executor, on_progress, PointClouds::kKeep);
+      options.place, match, source, executor, on_progress, PointClouds::kKeep);
   if (!map.ok()) return map.status();
-  Session session{path, *std::move(map), {}};
+  Session session{source.path, *std::move(map), {}};
   const std::set<int> without_submaps =
       TrajectoriesWithoutSubmaps(session.map.state);
   if (!without_submaps.empty()) {
@@ -118,7 +160,7 @@ Localization LocalizeIn(const LocalizationOptions& options,
       MakeMapLayout(map.state.pose_graph, map.odometry, map.places);
   const MapLayout query_layout =
       MakeMapLayout(query.state.pose_graph, query.odometry, query.places);
-  return Localize(
+  Localization result = Localize(
       options, stages.closing.consistency, stages.recognition.match,
       {&map.places, &map_layout}, {&query.places, &query_layout},
       [&](const std::map<SubmapId, Place>& queries,
@@ -127,6 +169,9 @@ Localization LocalizeIn(const LocalizationOptions& options,
                             on_progress);
       },
       executor, on_stage);
+  result.reason +=
+      ExplainRefusal(result, map, options.placement.min_observed_area);
+  return result;
 }
 
 JoinedSessions JoinSessions(const ClosingOptions& options,

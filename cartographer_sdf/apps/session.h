@@ -36,7 +36,7 @@ struct Session {
 // scan_places.h. Fails as ReadMap does.
 [[nodiscard]] absl::StatusOr<Session> DescribeSession(
     const LoopClosingOptions& options, const ScanPlaceOptions& scan_places,
-    const std::string& path, const std::optional<TimeWindow>& window,
+    const MapSource& source, const std::optional<TimeWindow>& window,
     const Executor& executor, const ProgressCallback& on_progress = {});
 
 // Localizes the query in the map by the matches of its places with all places

@@ -382,6 +382,8 @@ absl::StatusOr<FalsifiedMap> FalsifyMap(
     const Executor& executor) {
   CHECK_EQ(Validate(loop_closing), "");
   CHECK_EQ(Validate(options), "");
+  absl::Status status = CheckHasTrajectories(path, frozen_trajectories);
+  if (!status.ok()) return status;
   const absl::StatusOr<DescribedMap> map =
       DescribeMap(loop_closing.place, loop_closing.recognition.match, path,
                   executor, {}, PointClouds::kKeep);

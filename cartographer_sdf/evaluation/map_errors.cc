@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -79,6 +80,61 @@ Rigid2 PoseAt(const std::vector<TimedPose>& trajectory, const double time) {
   return Rigid2(pose.head<2>(), pose.z());
 }
 
+// A node of a drive: its pose by local SLAM and the true one, and the distance
+// driven in truth.
+struct DrivenNode {
+  Rigid2 T_local_tracking;
+  Rigid2 T_world_tracking;
+  double distance = 0.;
+};
+
+// The nodes of each trajectory that have a true pose.
+std::map<int, std::vector<DrivenNode>> DrivesOf(const PoseGraph& pose_graph,
+                                                const Truth& truth) {
+  std::map<int, std::vector<DrivenNode>> drives;
+  for (const auto& [id, node] : pose_graph.nodes) {
+    const auto T_world_tracking = truth.T_world_tracking.find(id);
+    if (T_world_tracking == truth.T_world_tracking.end()) continue;
+    std::vector<DrivenNode>& drive = drives[id.trajectory];
+    const Rigid2& T_local_node = node.T_local_node.value_or(node.T_map_node);
+    DrivenNode driven{Project2D(Embed3D(T_local_node) *
+                                Rigid3::Rotation(node.gravity_alignment)),
+                      T_world_tracking->second, 0.};
+    if (!drive.empty()) {
+      driven.distance =
+          drive.back().distance + (driven.T_world_tracking.translation() -
+                                   drive.back().T_world_tracking.translation())
+                                      .norm();
+    }
+    drive.push_back(driven);
+  }
+  return drives;
+}
+
+void CompareDrive(const std::vector<DrivenNode>& drive,
+                  DriveComparison* const comparison) {
+  constexpr double kLength = 10.;    // [m] of a stretch
+  constexpr double kMaxDrift = 1.5;  // [m] along it
+  size_t end = 0;
+  double next_begin = 0.;
+  for (size_t begin = 0; begin < drive.size(); ++begin) {
+    if (drive[begin].distance < next_begin) continue;
+    while (end < drive.size() &&
+           drive[end].distance < drive[begin].distance + kLength) {
+      ++end;
+    }
+    if (end == drive.size()) return;
+    next_begin = drive[begin].distance + kLength / 10.;
+    const Rigid2 by_slam =
+        drive[begin].T_local_tracking.Inverse() * drive[end].T_local_tracking;
+    const Rigid2 in_truth =
+        drive[begin].T_world_tracking.Inverse() * drive[end].T_world_tracking;
+    ++comparison->num_stretches;
+    comparison->num_different +=
+        (by_slam.translation() - in_truth.translation()).norm() > kMaxDrift;
+  }
+}
+
 }  // namespace
 
 std::optional<ErrorStatistics> Summarize(std::vector<double> errors) {
@@ -138,6 +194,27 @@ std::optional<TrajectoryError> EvaluateTrajectory(const PoseGraph& pose_graph,
   }
   result.errors = *SummarizePoses(errors);
   return result;
+}
+
+DriveComparison CompareDrives(const PoseGraph& pose_graph, const Truth& truth) {
+  DriveComparison comparison;
+  for (const auto& [trajectory, drive] : DrivesOf(pose_graph, truth)) {
+    CompareDrive(drive, &comparison);
+  }
+  return comparison;
+}
+
+absl::Status CheckIsTruthOf(const std::string& map_name,
+                            const PoseGraph& pose_graph,
+                            const std::string& truth_name, const Truth& truth) {
+  const DriveComparison comparison = CompareDrives(pose_graph, truth);
+  if (2 * comparison.num_different <= comparison.num_stretches) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(truth_name, " is the truth of another map: of ",
+                   comparison.num_stretches, " stretches of the drive, ",
+                   comparison.num_different, " go elsewhere in ", map_name));
 }
 
 absl::StatusOr<std::vector<Relation>> ReadRelations(const std::string& path) {

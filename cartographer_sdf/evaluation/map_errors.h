@@ -63,6 +63,22 @@ struct TrajectoryError {
 [[nodiscard]] std::optional<TrajectoryError> EvaluateTrajectory(
     const PoseGraph& pose_graph, const Truth& truth);
 
+// How a drive by local SLAM compares with the true one, stretch by stretch.
+struct DriveComparison {
+  int num_stretches = 0;
+  // Whose ends lie elsewhere, by more than local SLAM drifts within one.
+  int num_different = 0;
+};
+[[nodiscard]] DriveComparison CompareDrives(const PoseGraph& pose_graph,
+                                            const Truth& truth);
+
+// Returns an error if the truth is that of another map: if most stretches
+// differ. `map_name` and `truth_name` are for its message.
+[[nodiscard]] absl::Status CheckIsTruthOf(const std::string& map_name,
+                                          const PoseGraph& pose_graph,
+                                          const std::string& truth_name,
+                                          const Truth& truth);
+
 // Pose of one scan relative to another [Kuemmerle2009]. Unlike poses in a world
 // frame, relations do not spread an error at one place over the whole map.
 struct Relation {

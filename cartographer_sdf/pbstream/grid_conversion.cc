@@ -25,6 +25,8 @@ constexpr float kMaxCost = 0.9f;
 // Bounds of a plausible cell size [m].
 constexpr double kMinResolution = 1e-4;
 constexpr double kMaxResolution = 1e3;
+// 400 m by 400 m at 5 cm.
+constexpr int kMaxNumGridCells = 1 << 26;
 // Parameters of the occupancy of a TSDF, see the header.
 constexpr float kSurfaceProbability = 0.9f;
 constexpr float kFreeProbability = 0.1f;
@@ -79,6 +81,10 @@ absl::Status CheckLimits(const proto::MapLimits& limits, const int num_values) {
     return absl::DataLossError(absl::StrCat("has a grid of ", num_x, " x ",
                                             num_y, " cells with ", num_values,
                                             " values"));
+  }
+  if (num_values > kMaxNumGridCells) {
+    return absl::DataLossError(absl::StrCat(
+        "has a grid of ", num_x, " x ", num_y, " cells, which is too many"));
   }
   return absl::OkStatus();
 }

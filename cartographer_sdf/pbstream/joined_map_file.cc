@@ -138,10 +138,13 @@ class PartReader {
     return absl::OkStatus();
   }
 
-  // Adds the attitudes of the nodes read so far, under the new numbers.
-  void AppendAttitudes(Attitudes* const attitudes) const {
-    for (const auto& [id, attitude] : reader_.attitudes()) {
-      attitudes->emplace(Renumbered(*part_, id), attitude);
+  // Adds the submaps and nodes read so far, under the new numbers.
+  void AppendRecorded(RecordedElements* const recorded) const {
+    for (const auto& [id, attitude] : reader_.recorded().attitudes) {
+      recorded->attitudes.emplace(Renumbered(*part_, id), attitude);
+    }
+    for (const SubmapId& id : reader_.recorded().submaps) {
+      recorded->submaps.insert(Renumbered(*part_, id));
     }
   }
 
@@ -152,11 +155,7 @@ class PartReader {
     const std::optional<int> trajectory = TrajectoryOfRecord(data());
     if (!trajectory) return writer->WriteCompressed(reader_.compressed());
     const auto number = part_->trajectories.find(*trajectory);
-    if (number == part_->trajectories.end()) {
-      return reader_.Corrupted(
-          absl::StrCat("is of trajectory ", *trajectory,
-                       ", which is not in the pose graph"));
-    }
+    CHECK(number != part_->trajectories.end()) << *trajectory;
     if (data().trajectory_data().has_fixed_frame_origin_in_map()) {
       const absl::StatusOr<std::string> moved =
           MovedTrajectoryData(number->second, T_joined_map);
@@ -212,11 +211,12 @@ std::map<int, Rigid3> FirstNodesMoved(const PoseGraph& before,
 
 // Returns the motion of the first node of each trajectory.
 absl::StatusOr<std::map<int, Rigid3>> WriteBeginning(
-    const PoseGraph& pose_graph, const Attitudes& attitudes,
+    PoseGraph pose_graph, const RecordedElements& assumed,
     const std::string& output, Beginning* const beginning,
     RecordWriter* const writer) {
   proto::PoseGraph* const stored = beginning->pose_graph.mutable_pose_graph();
-  const PoseGraph before = ToPoseGraph(*stored, attitudes).value();
+  if (DropUnrecorded(assumed, stored)) DropUnrecorded(assumed, &pose_graph);
+  const PoseGraph before = ToPoseGraph(*stored, assumed.attitudes).value();
   const absl::StatusOr<bool> changed =
       UpdatePoseGraph(before, pose_graph, stored);
   if (!changed.ok()) {
@@ -265,7 +265,7 @@ absl::Status WriteRecords(const std::map<int, Rigid3>& T_joined_map,
 
 absl::StatusOr<WrittenMap> JoinMaps(const std::vector<MapPart>& parts,
                                     const PoseGraph& pose_graph,
-                                    const Attitudes& attitudes,
+                                    const RecordedElements& assumed,
                                     const std::string& output,
                                     const ProgressCallback& on_progress) {
   // Progress of each part; the total is their mean.
@@ -287,13 +287,13 @@ absl::StatusOr<WrittenMap> JoinMaps(const std::vector<MapPart>& parts,
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
   if (!writer.ok()) return writer.status();
   const absl::StatusOr<std::map<int, Rigid3>> T_joined_map =
-      WriteBeginning(pose_graph, attitudes, output, &beginning, &*writer);
+      WriteBeginning(pose_graph, assumed, output, &beginning, &*writer);
   if (!T_joined_map.ok()) return T_joined_map.status();
   const absl::Status status = WriteRecords(*T_joined_map, &readers, &*writer);
   if (!status.ok()) return status;
   WrittenMap map{*std::move(writer), {}};
   for (const PartReader& reader : readers) {
-    reader.AppendAttitudes(&map.attitudes);
+    reader.AppendRecorded(&map.recorded);
   }
   return map;
 }
@@ -349,6 +349,8 @@ void AppendMap(const MapPart& part, const MapState& map,
   for (const int trajectory : map.trajectories) {
     joined->trajectories.push_back(part.trajectories.at(trajectory));
   }
+  joined->num_unrecorded_submaps += map.num_unrecorded_submaps;
+  joined->num_unrecorded_nodes += map.num_unrecorded_nodes;
   for (const auto& [kind, count] : map.num_records) {
     joined->num_records[kind] += count;
   }
@@ -364,8 +366,8 @@ absl::Status WriteJoinedMap(const std::vector<MapPart>& parts,
     if (!status.ok()) return status;
   }
   absl::StatusOr<RecordWriter> file =
-      WriteWithAssumedAttitudes(pose_graph, [&](const Attitudes& attitudes) {
-        return JoinMaps(parts, pose_graph, attitudes, output, on_progress);
+      WriteAssuming(pose_graph, [&](const RecordedElements& assumed) {
+        return JoinMaps(parts, pose_graph, assumed, output, on_progress);
       });
   if (!file.ok()) return file.status();
   return file->Commit();

@@ -3,10 +3,12 @@
 
 #include "cartographer_sdf/pbstream/map_file.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "cartographer_sdf/pbstream/map_reader.h"
 #include "cartographer_sdf/pbstream/pose_graph_codec.h"
 
@@ -15,28 +17,30 @@ namespace {
 
 // Returns the changed pose graph; none if nothing differs.
 absl::StatusOr<std::optional<std::string>> ChangedPoseGraph(
-    const PoseGraph& pose_graph, const Attitudes& attitudes,
+    PoseGraph pose_graph, const RecordedElements& recorded,
     proto::SerializedData record) {
-  const absl::StatusOr<bool> changed =
-      UpdatePoseGraph(ToPoseGraph(record.pose_graph(), attitudes).value(),
-                      pose_graph, record.mutable_pose_graph());
+  proto::PoseGraph* const stored = record.mutable_pose_graph();
+  const bool dropped = DropUnrecorded(recorded, stored);
+  if (dropped) DropUnrecorded(recorded, &pose_graph);
+  const absl::StatusOr<bool> changed = UpdatePoseGraph(
+      ToPoseGraph(*stored, recorded.attitudes).value(), pose_graph, stored);
   if (!changed.ok()) return changed.status();
   std::optional<std::string> result;
-  if (*changed && !record.SerializeToString(&result.emplace())) {
+  if ((dropped || *changed) && !record.SerializeToString(&result.emplace())) {
     return absl::ResourceExhaustedError(
         "would have a pose graph larger than 2 GiB");
   }
   return result;
 }
 
-absl::StatusOr<WrittenMap> CopyMap(const std::string& input,
+absl::StatusOr<WrittenMap> CopyMap(const MapSource& input,
                                    const std::string& output,
                                    const PoseGraph& pose_graph,
-                                   const Attitudes& attitudes,
+                                   const RecordedElements& assumed,
                                    const MapVisitor& visitor,
                                    const ProgressCallback& on_progress) {
   absl::StatusOr<MapReader> reader =
-      MapReader::Open(input, visitor, on_progress);
+      MapReader::Open(input.path, visitor, on_progress);
   if (!reader.ok()) return reader.status();
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
   if (!writer.ok()) return writer.status();
@@ -49,16 +53,21 @@ absl::StatusOr<WrittenMap> CopyMap(const std::string& input,
     const absl::StatusOr<bool> has_record = reader->Next();
     if (!has_record.ok()) return has_record.status();
     if (!*has_record) {
-      return WrittenMap{*std::move(writer), reader->attitudes()};
+      if (input.missing_records == MissingRecords::kRefuse) {
+        const absl::Status whole = reader->CheckIsWhole();
+        if (!whole.ok()) return whole;
+      }
+      return WrittenMap{*std::move(writer), reader->recorded()};
     }
     replacement.reset();
     if (!reader->data().has_pose_graph()) continue;
     absl::StatusOr<std::optional<std::string>> changed =
-        ChangedPoseGraph(pose_graph, attitudes, reader->data());
+        ChangedPoseGraph(pose_graph, assumed, reader->data());
     if (!changed.ok()) {
-      return absl::Status(changed.status().code(),
-                          absl::StrCat("cannot write ", output, ": ", input,
-                                       " ", changed.status().message()));
+      return absl::Status(
+          changed.status().code(),
+          absl::StrCat("cannot write ", output, ": ", input.path, " ",
+                       changed.status().message()));
     }
     replacement = *std::move(changed);
   }
@@ -66,32 +75,59 @@ absl::StatusOr<WrittenMap> CopyMap(const std::string& input,
 
 }  // namespace
 
-absl::StatusOr<MapState> ReadMap(const std::string& path,
+absl::StatusOr<MapState> ReadMap(const MapSource& source,
                                  const MapVisitor& visitor,
                                  const ProgressCallback& on_progress) {
   absl::StatusOr<MapReader> reader =
-      MapReader::Open(path, visitor, on_progress);
+      MapReader::Open(source.path, visitor, on_progress);
   if (!reader.ok()) return reader.status();
   while (true) {
     const absl::StatusOr<bool> has_record = reader->Next();
     if (!has_record.ok()) return has_record.status();
-    if (!*has_record) return reader->Finish();
+    if (!*has_record) return reader->Finish(source.missing_records);
   }
 }
 
+absl::StatusOr<std::vector<int>> ReadTrajectories(const std::string& path) {
+  absl::StatusOr<MapReader> reader = MapReader::Open(path, {}, {});
+  if (!reader.ok()) return reader.status();
+  const absl::StatusOr<bool> has_pose_graph = reader->Next();
+  if (!has_pose_graph.ok()) return has_pose_graph.status();
+  std::vector<int> trajectories;
+  for (const proto::Trajectory& trajectory :
+       reader->data().pose_graph().trajectory()) {
+    trajectories.push_back(trajectory.trajectory_id());
+  }
+  return trajectories;
+}
+
+absl::Status CheckHasTrajectories(const std::string& path,
+                                  const std::set<int>& trajectories) {
+  if (trajectories.empty()) return absl::OkStatus();
+  const absl::StatusOr<std::vector<int>> known = ReadTrajectories(path);
+  if (!known.ok()) return known.status();
+  for (const int trajectory : trajectories) {
+    if (std::count(known->begin(), known->end(), trajectory) > 0) continue;
+    return absl::NotFoundError(
+        absl::StrCat(path, " has no trajectory ", trajectory, "; it has ",
+                     known->empty() ? "none" : absl::StrJoin(*known, ", ")));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
-    const std::string& path, const std::set<NodeId>& nodes,
+    const MapSource& source, const std::set<NodeId>& nodes,
     const ProgressCallback& on_progress) {
   std::map<NodeId, PointCloud2> clouds;
   const auto keep = [&](const NodeId& id, PointCloud2 cloud) {
     if (nodes.count(id) > 0) clouds.emplace(id, std::move(cloud));
   };
-  const absl::StatusOr<MapState> map = ReadMap(path, {{}, keep}, on_progress);
+  const absl::StatusOr<MapState> map = ReadMap(source, {{}, keep}, on_progress);
   if (!map.ok()) return map.status();
   return clouds;
 }
 
-absl::Status WriteMap(const std::string& input, const std::string& output,
+absl::Status WriteMap(const MapSource& input, const std::string& output,
                       const PoseGraph& pose_graph,
                       const ProgressCallback& on_progress) {
   absl::StatusOr<RecordWriter> map =
@@ -100,15 +136,15 @@ absl::Status WriteMap(const std::string& input, const std::string& output,
   return map->Commit();
 }
 
-absl::StatusOr<RecordWriter> PrepareMap(const std::string& input,
+absl::StatusOr<RecordWriter> PrepareMap(const MapSource& input,
                                         const std::string& output,
                                         const PoseGraph& pose_graph,
                                         const MapVisitor& visitor,
                                         const ProgressCallback& on_progress) {
   // A visitor that has seen the whole map is not called again.
   MapVisitor next_visitor = visitor;
-  return WriteWithAssumedAttitudes(pose_graph, [&](const Attitudes& attitudes) {
-    return CopyMap(input, output, pose_graph, attitudes,
+  return WriteAssuming(pose_graph, [&](const RecordedElements& assumed) {
+    return CopyMap(input, output, pose_graph, assumed,
                    std::exchange(next_visitor, {}), on_progress);
   });
 }

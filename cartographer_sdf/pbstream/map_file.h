@@ -17,6 +17,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -40,9 +41,29 @@ struct SubmapSummary {
   int num_known_cells = 0;
 };
 
+// What to make of submaps and nodes of the pose graph that have no record of
+// their own. The pose graph is at the beginning of a file: a file that was cut
+// at the border of a record has all poses, but no data of what comes later.
+enum class MissingRecords {
+  kRefuse,  // an error that says how many
+  kDrop,    // the pose graph lacks them, and their constraints
+  kKeep,    // the pose graph has them: to look at a map, not to change it
+};
+
+// A map to read. A path alone is one that must be whole.
+struct MapSource {
+  MapSource(std::string path,  // NOLINT: a path is a map
+            const MissingRecords missing_records = MissingRecords::kRefuse)
+      : path(std::move(path)), missing_records(missing_records) {}
+  MapSource(const char* const path)  // NOLINT: as above
+      : MapSource(std::string(path)) {}
+
+  std::string path;
+  MissingRecords missing_records;
+};
+
 struct MapState {
   int format_version = 0;
-  // Submaps and nodes may lack a record of their own.
   PoseGraph pose_graph;
   std::map<SubmapId, SubmapSummary> submaps;
   // Ids, in file order.
@@ -50,6 +71,9 @@ struct MapState {
   // Number of records of each kind, by the name of the SerializedData field
   // ("submap", "node", "imu_data", ..., "unknown").
   std::map<std::string, int> num_records;
+  // Without a record of their own, whatever was made of them.
+  int num_unrecorded_submaps = 0;
+  int num_unrecorded_nodes = 0;
 };
 
 // Called for each submap with a grid, to keep or to read. The grid is in the
@@ -70,14 +94,24 @@ struct MapVisitor {
 // Decompresses the file once, with any visitor. Progress is the fraction of
 // bytes read.
 [[nodiscard]] absl::StatusOr<MapState> ReadMap(
-    const std::string& path, const MapVisitor& visitor = {},
+    const MapSource& source, const MapVisitor& visitor = {},
     const ProgressCallback& on_progress = {});
+
+// Reads the beginning of the file only: the ids of its trajectories, in file
+// order.
+[[nodiscard]] absl::StatusOr<std::vector<int>> ReadTrajectories(
+    const std::string& path);
+
+// Returns an error unless the map has each of these trajectories. Reads nothing
+// if there are none, else the beginning of the file.
+[[nodiscard]] absl::Status CheckHasTrajectories(
+    const std::string& path, const std::set<int>& trajectories);
 
 // Returns the filtered range data of the given nodes, without nodes that have
 // none. Reads the whole map: a caller that reads it anyway should pass a
 // visitor to ReadMap() instead.
 [[nodiscard]] absl::StatusOr<std::map<NodeId, PointCloud2>> ReadPointClouds(
-    const std::string& path, const std::set<NodeId>& nodes,
+    const MapSource& source, const std::set<NodeId>& nodes,
     const ProgressCallback& on_progress = {});
 
 // Copies `input` to `output` with the constraints and the poses of submaps,
@@ -87,18 +121,22 @@ struct MapVisitor {
 //
 // - Poses that differ are written as the host writes optimised ones. Others
 //   stay unchanged, as do elements that `pose_graph` lacks.
+// - Submaps and nodes without a record of their own, and their constraints, are
+//   left out of the output; by default, an input that has such is refused.
 // - Constraints become those of `pose_graph`, in its order. The k-th constraint
 //   of a submap, node and tag corresponds to the k-th one in the input and
 //   keeps every unchanged value, above all its pose in space. Surplus
 //   constraints of the input are dropped; surplus ones of `pose_graph` are new.
 //
 // The output appears complete or not at all, and may be the input. Fails if
-// ReadMap(input) fails, or if `pose_graph` has elements that the input lacks or
-// non-finite numbers. Odometry is not written.
+// the input cannot be read, or if `pose_graph` has elements that the input
+// lacks or non-finite numbers. Odometry is not written. Before it appears, the
+// output is read with all checks of ReadMap(), scans included: what the host
+// would not load is never written.
 //
 // Decompresses the input once, or twice if `pose_graph` lacks nodes or has
 // other gravity alignments than the input, see map_reader.h.
-[[nodiscard]] absl::Status WriteMap(const std::string& input,
+[[nodiscard]] absl::Status WriteMap(const MapSource& input,
                                     const std::string& output,
                                     const PoseGraph& pose_graph,
                                     const ProgressCallback& on_progress = {});
@@ -107,7 +145,7 @@ struct MapVisitor {
 // or want to visit the content of the input as it passes. The map appears only
 // with Commit() of the result; without it, nothing is left behind.
 [[nodiscard]] absl::StatusOr<RecordWriter> PrepareMap(
-    const std::string& input, const std::string& output,
+    const MapSource& input, const std::string& output,
     const PoseGraph& pose_graph, const MapVisitor& visitor = {},
     const ProgressCallback& on_progress = {});
 

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/grid_conversion.h"
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
+#include "cartographer_sdf/pbstream/record_limits.h"
+#include "cartographer_sdf/pbstream/trajectory_record.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -19,6 +22,8 @@ using Kind = proto::SerializedData::DataCase;
 constexpr char kPoseGraphName[] = "pose graph";
 constexpr char kOptionsName[] = "options of trajectory builders";
 // With and without histograms in submaps, which 2D does not use.
+// Of all records but the pose graph: sixteen times the largest grid known.
+constexpr int64_t kMaxOtherRecordSize = (int64_t{1} << 28) - 1;
 constexpr uint32_t kMinFormatVersion = 1;
 constexpr uint32_t kMaxFormatVersion = 2;
 
@@ -34,15 +39,15 @@ int CountTrue(const BoolArray& cells) {
       std::count(cells.data(), cells.data() + cells.size(), true));
 }
 
-// Returns whether nodes have the same gravity alignment in both; an absent node
-// has the identity.
-bool AreSame(Attitudes a, Attitudes b) {
-  for (const auto& entry : a) b[entry.first];
-  for (const auto& entry : b) a[entry.first];
-  return std::equal(a.begin(), a.end(), b.begin(),
-                    [](const auto& one, const auto& other) {
-                      return one.second.gravity_alignment.coeffs() ==
-                             other.second.gravity_alignment.coeffs();
+// Returns whether both have the same elements, and their nodes the same gravity
+// alignments.
+bool AreSame(const RecordedElements& a, const RecordedElements& b) {
+  return a.submaps == b.submaps &&
+         std::equal(a.attitudes.begin(), a.attitudes.end(), b.attitudes.begin(),
+                    b.attitudes.end(), [](const auto& one, const auto& other) {
+                      return one.first == other.first &&
+                             one.second.gravity_alignment.coeffs() ==
+                                 other.second.gravity_alignment.coeffs();
                     });
 }
 
@@ -74,14 +79,16 @@ absl::Status MapReader::ReadHeader() {
       header.format_version() > kMaxFormatVersion) {
     return absl::UnimplementedError(absl::StrCat(
         records_.path(), " has format version ", header.format_version(),
-        ", but only versions 1 and 2 are supported"));
+        ", but only versions 1 and 2 are supported; Cartographer's "
+        "`pbstream migrate` converts older files"));
   }
   state_.format_version = static_cast<int>(header.format_version());
   return absl::OkStatus();
 }
 
 absl::StatusOr<bool> MapReader::Next() {
-  const absl::StatusOr<bool> has_record = records_.Read(&record_);
+  const absl::StatusOr<bool> has_record = records_.Read(
+      &record_, num_records_ == 0 ? kMaxRecordSize : kMaxOtherRecordSize);
   if (!has_record.ok()) return has_record;
   if (on_progress_) {
     on_progress_(static_cast<double>(records_.position()) /
@@ -92,6 +99,9 @@ absl::StatusOr<bool> MapReader::Next() {
     return absl::DataLossError(
         absl::StrCat(records_.path(), " is truncated: it ends before its ",
                      num_records_ == 0 ? kPoseGraphName : kOptionsName));
+  }
+  if (HasTooManyFields(*proto::SerializedData::descriptor(), record_)) {
+    return Corrupted("has too many fields");
   }
   if (!data_.ParseFromString(record_)) {
     return Corrupted("is not a valid protocol buffer");
@@ -105,10 +115,38 @@ absl::StatusOr<bool> MapReader::Next() {
   return true;
 }
 
-MapState MapReader::Finish() {
-  state_.pose_graph = ToPoseGraph(stored_pose_graph_, attitudes_).value();
+absl::StatusOr<MapState> MapReader::Finish(
+    const MissingRecords missing_records) {
+  if (missing_records == MissingRecords::kRefuse) {
+    if (absl::Status status = CheckIsWhole(); !status.ok()) return status;
+  }
+  state_.pose_graph =
+      ToPoseGraph(stored_pose_graph_, recorded_.attitudes).value();
+  state_.num_unrecorded_submaps = static_cast<int>(
+      state_.pose_graph.submap_poses.size() - recorded_.submaps.size());
+  state_.num_unrecorded_nodes = static_cast<int>(
+      state_.pose_graph.nodes.size() - recorded_.attitudes.size());
+  if (missing_records == MissingRecords::kDrop) {
+    DropUnrecorded(recorded_, &state_.pose_graph);
+  }
   SetRelativeOdometry(odometry_->poses(), &state_.pose_graph.nodes);
   return std::move(state_);
+}
+
+absl::Status MapReader::CheckIsWhole() const {
+  // Records of what is not in the pose graph are errors.
+  const size_t num_submaps = state_.pose_graph.submap_poses.size();
+  const size_t num_nodes = state_.pose_graph.nodes.size();
+  const size_t num_missing_submaps = num_submaps - recorded_.submaps.size();
+  const size_t num_missing_nodes = num_nodes - recorded_.attitudes.size();
+  if (num_missing_submaps == 0 && num_missing_nodes == 0) {
+    return absl::OkStatus();
+  }
+  return absl::DataLossError(absl::StrCat(
+      records_.path(), " is not whole: ", num_missing_submaps, " of ",
+      num_submaps, " submaps and ", num_missing_nodes, " of ", num_nodes,
+      " nodes in its pose graph have no record of their own, as if the file "
+      "had been cut; --repair leaves them out"));
 }
 
 absl::Status MapReader::Expect(const Kind kind, const char* const name) const {
@@ -147,7 +185,33 @@ absl::Status MapReader::ReadOptions() {
       " trajectories, but it has options for ", num_options, " of them"));
 }
 
+absl::Status MapReader::CheckTrajectory() const {
+  const std::optional<int> trajectory = TrajectoryOfRecord(data_);
+  const std::vector<int>& known = state_.trajectories;
+  if (!trajectory ||
+      std::find(known.begin(), known.end(), *trajectory) != known.end()) {
+    return absl::OkStatus();
+  }
+  return Corrupted(absl::StrCat("is of trajectory ", *trajectory,
+                                ", which is not in the pose graph"));
+}
+
+absl::Status MapReader::CheckOrder(const proto::SensorData& stored) {
+  const int64_t time = stored.data().timestamp();
+  const auto [last, is_first] = last_times_.try_emplace(
+      std::make_pair(static_cast<int>(data_.data_case()),
+                     stored.trajectory_id()),
+      time);
+  if (!is_first && time <= last->second) {
+    return Corrupted(
+        absl::StrCat("has ", KindName(data_), " that is not in time order"));
+  }
+  last->second = time;
+  return absl::OkStatus();
+}
+
 absl::Status MapReader::ReadOther() {
+  if (absl::Status status = CheckTrajectory(); !status.ok()) return status;
   switch (data_.data_case()) {
     case Kind::kPoseGraph:
       return Corrupted("is a second pose graph");
@@ -159,6 +223,10 @@ absl::Status MapReader::ReadOther() {
       return ReadNode(data_.node());
     case Kind::kOdometryData:
       return ReadOdometry(data_.odometry_data());
+    case Kind::kImuData:
+      return CheckOrder(data_.imu_data());
+    case Kind::kFixedFramePoseData:
+      return CheckOrder(data_.fixed_frame_pose_data());
     default:
       return absl::OkStatus();
   }
@@ -175,7 +243,7 @@ absl::Status MapReader::ReadSubmap(const proto::Submap& stored) {
   if (state_.pose_graph.submap_poses.count(id) == 0) {
     return Corrupted(name + "is not in the pose graph");
   }
-  if (state_.submaps.count(id) > 0) {
+  if (!recorded_.submaps.insert(id).second) {
     return Corrupted("is the second of " + Name("submap", id));
   }
   if (!stored.has_submap_2d()) return Corrupted(name + "is empty");
@@ -211,12 +279,13 @@ absl::Status MapReader::ReadNode(const proto::Node& stored) {
   if (state_.pose_graph.nodes.count(id) == 0) {
     return Corrupted(name + "is not in the pose graph");
   }
+  if (!stored.has_node_data()) return Corrupted(name + "has no data");
   const absl::StatusOr<NodeAttitude> attitude =
       ReadNodeAttitude(stored.node_data());
   if (!attitude.ok()) {
     return Corrupted(absl::StrCat(name, attitude.status().message()));
   }
-  if (!attitudes_.emplace(id, *attitude).second) {
+  if (!recorded_.attitudes.emplace(id, *attitude).second) {
     return Corrupted(name + "is the second of this node");
   }
   const proto::NodeData& data = stored.node_data();
@@ -241,20 +310,38 @@ absl::Status MapReader::ReadOdometry(const proto::OdometryData& stored) {
   return status.ok() ? status : Corrupted(status.message());
 }
 
-absl::StatusOr<RecordWriter> WriteWithAssumedAttitudes(
-    const PoseGraph& pose_graph, const AssumingWriter& write) {
-  Attitudes assumed;
+absl::StatusOr<RecordWriter> WriteAssuming(const PoseGraph& pose_graph,
+                                           const AssumingWriter& write) {
+  RecordedElements assumed;
   for (const auto& [id, node] : pose_graph.nodes) {
-    assumed[id].gravity_alignment = node.gravity_alignment;
+    assumed.attitudes[id].gravity_alignment = node.gravity_alignment;
+  }
+  for (const auto& [id, pose] : pose_graph.submap_poses) {
+    assumed.submaps.insert(id);
   }
   constexpr int kMaxAttempts = 2;
   for (int i = 0; i < kMaxAttempts; ++i) {
     absl::StatusOr<WrittenMap> map = write(assumed);
     if (!map.ok()) return map.status();
-    if (AreSame(assumed, map->attitudes)) return std::move(map->file);
-    assumed = std::move(map->attitudes);
+    if (AreSame(assumed, map->recorded)) {
+      absl::Status status = CheckLoads(map->file);
+      if (!status.ok()) return status;
+      return std::move(map->file);
+    }
+    assumed = std::move(map->recorded);
   }
   return absl::AbortedError("the map changes while it is read");
+}
+
+absl::Status CheckLoads(const RecordWriter& output) {
+  const auto ignore = [](const NodeId&, const PointCloud2&) {};
+  const absl::Status status =
+      ReadMap(output.temporary_path(), {{}, ignore}).status();
+  if (status.ok()) return status;
+  return absl::Status(
+      status.code(),
+      absl::StrCat("cannot write ", output.path(),
+                   ": Cartographer would not load it: ", status.message()));
 }
 
 }  // namespace cartographer_sdf

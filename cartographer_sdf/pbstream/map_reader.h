@@ -4,7 +4,9 @@
 #ifndef CARTOGRAPHER_SDF_PBSTREAM_MAP_READER_H_
 #define CARTOGRAPHER_SDF_PBSTREAM_MAP_READER_H_
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,11 +46,14 @@ class MapReader {
     return records_.Corrupted(problem);
   }
   [[nodiscard]] int format_version() const { return state_.format_version; }
-  // Attitudes of the nodes whose records have been read so far.
-  [[nodiscard]] const Attitudes& attitudes() const { return attitudes_; }
+  // The submaps and nodes whose records have been read so far.
+  [[nodiscard]] const RecordedElements& recorded() const { return recorded_; }
 
+  // At the end of the file: an error if submaps or nodes have no record of
+  // their own.
+  [[nodiscard]] absl::Status CheckIsWhole() const;
   // Returns the result of ReadMap(). Call once, at the end of the file.
-  [[nodiscard]] MapState Finish();
+  [[nodiscard]] absl::StatusOr<MapState> Finish(MissingRecords missing_records);
 
  private:
   explicit MapReader(RecordReader records) : records_(std::move(records)) {}
@@ -63,6 +68,11 @@ class MapReader {
   [[nodiscard]] absl::Status ReadSubmap(const proto::Submap& stored);
   [[nodiscard]] absl::Status ReadNode(const proto::Node& stored);
   [[nodiscard]] absl::Status ReadOdometry(const proto::OdometryData& stored);
+  // Returns an error unless the current record is of a trajectory of the map.
+  [[nodiscard]] absl::Status CheckTrajectory() const;
+  // Returns an error unless these data are later than those of the same kind
+  // and trajectory before.
+  [[nodiscard]] absl::Status CheckOrder(const proto::SensorData& stored);
 
   RecordReader records_;
   MapVisitor visitor_;
@@ -72,27 +82,35 @@ class MapReader {
   int num_records_ = 0;  // without the header
   MapState state_;
   proto::PoseGraph stored_pose_graph_;
-  Attitudes attitudes_;
+  RecordedElements recorded_;
+  // Of the last sensor data of each kind and trajectory.
+  std::map<std::pair<int, int>, int64_t> last_times_;
   std::optional<NodeOdometry> odometry_;  // set once the pose graph is read
 };
 
 // Writes a map while it is read. The pose graph comes first in the file, but
 // changing it requires the nodes' gravity alignments, which come later, in the
-// nodes' own records. A pose graph returned by ReadMap() contains them; they
-// are assumed to match the file and are compared with it at its end.
+// nodes' own records, as does what has no record at all. A pose graph returned
+// by ReadMap() contains them; they are assumed to match the file and are
+// compared with it at its end.
 struct WrittenMap {
   RecordWriter file;  // complete, not yet committed
-  // The attitudes found in the nodes' records.
-  Attitudes attitudes;
+  // What was found in the file.
+  RecordedElements recorded;
 };
 using AssumingWriter =
-    std::function<absl::StatusOr<WrittenMap>(const Attitudes& assumed)>;
+    std::function<absl::StatusOr<WrittenMap>(const RecordedElements& assumed)>;
 
-// Calls `write` with the gravity alignments of `pose_graph`, and once more with
-// those of the file if they differ: where `pose_graph` lacks nodes, or its
-// gravity alignments were changed. Fails as `write` does.
-[[nodiscard]] absl::StatusOr<RecordWriter> WriteWithAssumedAttitudes(
+// Calls `write` with the elements and gravity alignments of `pose_graph`, and
+// once more with those of the file if they differ: where `pose_graph` lacks
+// submaps or nodes, has some without a record of their own, or other gravity
+// alignments. Fails as `write` does, or if the host would not load the result.
+[[nodiscard]] absl::StatusOr<RecordWriter> WriteAssuming(
     const PoseGraph& pose_graph, const AssumingWriter& write);
+
+// Reads what was written, which is complete but not committed, with all checks
+// of ReadMap(), scans included. An error says that `output` cannot be written.
+[[nodiscard]] absl::Status CheckLoads(const RecordWriter& output);
 
 }  // namespace cartographer_sdf
 

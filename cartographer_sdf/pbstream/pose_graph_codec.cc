@@ -3,13 +3,16 @@
 
 #include "cartographer_sdf/pbstream/pose_graph_codec.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
@@ -148,6 +151,49 @@ bool IsSame(const Rigid2& a, const Rigid2& b) {
 bool IsSame(const Rigid3& a, const Rigid3& b) {
   return a.translation == b.translation &&
          a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+// The host inserts each node only once into a submap.
+absl::Status CheckIntraConstraintsOnce(const PoseGraph& graph) {
+  std::vector<std::pair<SubmapId, NodeId>> pairs;
+  for (const Constraint& constraint : graph.constraints) {
+    if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;
+    pairs.emplace_back(constraint.submap, constraint.node);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
+  if (twice == pairs.end()) return absl::OkStatus();
+  return absl::DataLossError(absl::StrCat(
+      "has the intra-submap constraint of ", Name("submap", twice->first),
+      " and ", Name("node", twice->second), " twice"));
+}
+
+bool IsRecorded(const RecordedElements& recorded, const SubmapId& submap) {
+  return recorded.submaps.count(submap) > 0;
+}
+
+bool IsRecorded(const RecordedElements& recorded, const NodeId& node) {
+  return recorded.attitudes.count(node) > 0;
+}
+
+// Removes the elements of a list or vector that the predicate is true for;
+// returns whether there were any.
+template <typename List, typename Predicate>
+bool RemoveIf(List* const list, const Predicate& predicate) {
+  const auto end = std::remove_if(list->begin(), list->end(), predicate);
+  if (end == list->end()) return false;
+  list->erase(end, list->end());
+  return true;
+}
+
+template <typename IdType, typename Element>
+bool RemoveUnrecorded(const RecordedElements& recorded,
+                      std::map<IdType, Element>* const elements) {
+  const size_t size_before = elements->size();
+  for (auto it = elements->begin(); it != elements->end();) {
+    it = IsRecorded(recorded, it->first) ? std::next(it) : elements->erase(it);
+  }
+  return elements->size() < size_before;
 }
 
 // Constraints of the same kind between the same submap and node.
@@ -322,6 +368,43 @@ absl::StatusOr<NodeAttitude> ReadNodeAttitude(const proto::NodeData& data) {
   return attitude;
 }
 
+bool DropUnrecorded(const RecordedElements& recorded,
+                    proto::PoseGraph* const stored) {
+  bool dropped = false;
+  for (proto::Trajectory& trajectory : *stored->mutable_trajectory()) {
+    const int number = trajectory.trajectory_id();
+    dropped |= RemoveIf(
+        trajectory.mutable_submap(), [&](const proto::TrajectorySubmap& it) {
+          return !IsRecorded(recorded, SubmapId{number, it.submap_index()});
+        });
+    dropped |= RemoveIf(
+        trajectory.mutable_node(), [&](const proto::TrajectoryNode& it) {
+          return !IsRecorded(recorded, NodeId{number, it.node_index()});
+        });
+  }
+  if (!dropped) return false;
+  RemoveIf(stored->mutable_constraint(), [&](const proto::Constraint& it) {
+    const proto::Id& submap = it.submap_id();
+    const proto::Id& node = it.node_id();
+    return !IsRecorded(recorded,
+                       SubmapId{submap.trajectory_id(), submap.index()}) ||
+           !IsRecorded(recorded, NodeId{node.trajectory_id(), node.index()});
+  });
+  return true;
+}
+
+bool DropUnrecorded(const RecordedElements& recorded, PoseGraph* const graph) {
+  const bool dropped_submaps = RemoveUnrecorded(recorded, &graph->submap_poses);
+  const bool dropped_nodes = RemoveUnrecorded(recorded, &graph->nodes);
+  // Also of what the graph does not have.
+  const bool dropped_constraints =
+      RemoveIf(&graph->constraints, [&](const Constraint& constraint) {
+        return !IsRecorded(recorded, constraint.submap) ||
+               !IsRecorded(recorded, constraint.node);
+      });
+  return dropped_submaps || dropped_nodes || dropped_constraints;
+}
+
 absl::StatusOr<PoseGraph> ToPoseGraph(const proto::PoseGraph& stored,
                                       const Attitudes& attitudes) {
   PoseGraph graph;
@@ -339,6 +422,8 @@ absl::StatusOr<PoseGraph> ToPoseGraph(const proto::PoseGraph& stored,
     status = AddConstraint(constraint, &graph);
     if (!status.ok()) return status;
   }
+  status = CheckIntraConstraintsOnce(graph);
+  if (!status.ok()) return status;
   for (const proto::LandmarkPose& landmark : stored.landmark_poses()) {
     const absl::StatusOr<Rigid3> pose = FromProto(landmark.global_pose());
     if (graph.landmark_poses.count(landmark.landmark_id()) > 0) {

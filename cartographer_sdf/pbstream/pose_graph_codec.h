@@ -14,9 +14,11 @@
 #include <Eigen/Geometry>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/geometry/rigid3.h"
+#include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
 #include "cartographer_sdf/serialized_state.pb.h"
 
@@ -32,14 +34,26 @@ struct NodeAttitude {
 // Absent nodes have no record of their own.
 using Attitudes = std::map<NodeId, NodeAttitude>;
 
+// The elements of a stored pose graph that have a record of their own.
+struct RecordedElements {
+  Attitudes attitudes;  // of the nodes
+  std::set<SubmapId> submaps;
+};
+
+// Removes the submaps and nodes that have no record of their own, and their
+// constraints: the host aborts on a constraint of what it has no data of.
+// Returns whether there were any.
+bool DropUnrecorded(const RecordedElements& recorded, proto::PoseGraph* stored);
+bool DropUnrecorded(const RecordedElements& recorded, PoseGraph* graph);
+
 // An absent gravity alignment means the identity.
 [[nodiscard]] absl::StatusOr<NodeAttitude> ReadNodeAttitude(
     const proto::NodeData& data);
 
 // Nodes without attitude get an identity gravity alignment. Odometry is left
 // absent. Fails unless ids are unique, non-negative and known where they are
-// referenced, poses valid, and weights finite and non-negative; the attitudes
-// do not affect these checks.
+// referenced, poses valid, weights finite and non-negative, and intra-submap
+// constraints unique; the attitudes do not affect these checks.
 [[nodiscard]] absl::StatusOr<PoseGraph> ToPoseGraph(
     const proto::PoseGraph& stored, const Attitudes& attitudes);
 

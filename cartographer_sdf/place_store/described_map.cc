@@ -4,10 +4,12 @@
 #include "cartographer_sdf/place_store/described_map.h"
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/place_store/place_file.h"
 
 namespace cartographer_sdf {
@@ -18,7 +20,7 @@ namespace {
 constexpr size_t kBatchSize = 16;
 
 // Reads the map without places.
-absl::StatusOr<DescribedMap> ReadAndVisit(const std::string& path,
+absl::StatusOr<DescribedMap> ReadAndVisit(const MapSource& source,
                                           const SubmapCallback& on_submap,
                                           const PointClouds wanted,
                                           const ProgressCallback& on_progress) {
@@ -29,7 +31,7 @@ absl::StatusOr<DescribedMap> ReadAndVisit(const std::string& path,
       map.point_clouds.emplace(id, std::move(cloud));
     };
   }
-  absl::StatusOr<MapState> state = ReadMap(path, visitor, on_progress);
+  absl::StatusOr<MapState> state = ReadMap(source, visitor, on_progress);
   if (!state.ok()) return state.status();
   map.state = *std::move(state);
   map.odometry = OdometryPoses(map.state);
@@ -60,7 +62,7 @@ std::map<SubmapId, Place> DescribePlaces(
 
 absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
                                          const MatchOptions& match_options,
-                                         const std::string& path,
+                                         const MapSource& source,
                                          const Executor& executor,
                                          const ProgressCallback& on_progress,
                                          const PointClouds point_clouds) {
@@ -76,7 +78,7 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
     if (batch.size() >= kBatchSize) describe_batch();
   };
   absl::StatusOr<DescribedMap> map =
-      ReadAndVisit(path, add, point_clouds, on_progress);
+      ReadAndVisit(source, add, point_clouds, on_progress);
   if (!map.ok()) return map;
   describe_batch();
   map->places = std::move(places);
@@ -85,16 +87,23 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
 
 absl::StatusOr<RememberedMap> RememberMap(
     const PlaceOptions& place_options, const MatchOptions& match_options,
-    const std::string& options_text, const std::string& path,
+    const std::string& options_text, const MapSource& source,
     const std::string& places_path, const Executor& executor,
     const ProgressCallback& on_progress, const PointClouds point_clouds) {
-  const absl::StatusOr<PlaceFileKey> key = MakePlaceFileKey(path, options_text);
+  std::error_code error;
+  if (std::filesystem::file_size(places_path, error) > 0 && !error &&
+      !IsPlaceFile(places_path)) {
+    return absl::AlreadyExistsError(absl::StrCat(
+        "cannot write ", places_path, ": it exists, and is no file of places"));
+  }
+  const absl::StatusOr<PlaceFileKey> key =
+      MakePlaceFileKey(source.path, options_text);
   if (!key.ok()) return key.status();
   absl::StatusOr<std::map<SubmapId, Place>> places =
       ReadPlaces(places_path, *key);
   absl::StatusOr<DescribedMap> map =
-      places.ok() ? ReadAndVisit(path, {}, point_clouds, on_progress)
-                  : DescribeMap(place_options, match_options, path, executor,
+      places.ok() ? ReadAndVisit(source, {}, point_clouds, on_progress)
+                  : DescribeMap(place_options, match_options, source, executor,
                                 on_progress, point_clouds);
   if (!map.ok()) return map.status();
   RememberedMap remembered{*std::move(map), places.ok(), ""};
@@ -144,8 +153,8 @@ std::map<SubmapId, OdometryPose> OdometryPoses(const MapState& state) {
 }
 
 absl::StatusOr<DescribedMap> ReadMapWithScans(
-    const std::string& path, const ProgressCallback& on_progress) {
-  return ReadAndVisit(path, {}, PointClouds::kKeep, on_progress);
+    const MapSource& source, const ProgressCallback& on_progress) {
+  return ReadAndVisit(source, {}, PointClouds::kKeep, on_progress);
 }
 
 }  // namespace cartographer_sdf

@@ -50,13 +50,13 @@ enum class PointClouds { kDrop, kKeep };
 // at a time.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMap(
     const PlaceOptions& place_options, const MatchOptions& match_options,
-    const std::string& path, const Executor& executor,
+    const MapSource& source, const Executor& executor,
     const ProgressCallback& on_progress = {},
     PointClouds point_clouds = PointClouds::kDrop);
 
 // Reads the map with its point clouds, without places.
 [[nodiscard]] absl::StatusOr<DescribedMap> ReadMapWithScans(
-    const std::string& path, const ProgressCallback& on_progress = {});
+    const MapSource& source, const ProgressCallback& on_progress = {});
 
 struct RememberedMap {
   DescribedMap map;
@@ -69,10 +69,10 @@ struct RememberedMap {
 // Like DescribeMap, but takes the places from a file (place_file.h) that an
 // earlier run has left; otherwise describes them and writes one. `options_text`
 // holds the options that places depend on; a file with other options is not
-// used. Fails as DescribeMap does.
+// used. Fails as DescribeMap does, or if something else than places is there.
 [[nodiscard]] absl::StatusOr<RememberedMap> RememberMap(
     const PlaceOptions& place_options, const MatchOptions& match_options,
-    const std::string& options_text, const std::string& path,
+    const std::string& options_text, const MapSource& source,
     const std::string& places_path, const Executor& executor,
     const ProgressCallback& on_progress = {},
     PointClouds point_clouds = PointClouds::kDrop);

@@ -307,6 +307,14 @@ absl::StatusOr<PlaceFileKey> MakePlaceFileKey(const std::string& map_path,
   return key;
 }
 
+bool IsPlaceFile(const std::string& path) {
+  absl::StatusOr<RecordReader> reader = RecordReader::Open(path);
+  std::string record;
+  proto::place_index::Header header;
+  return reader.ok() && reader->Read(&record).value_or(false) &&
+         header.ParseFromString(record) && header.kind() == kKind;
+}
+
 absl::Status WritePlaces(const std::string& path, const PlaceFileKey& key,
                          const std::map<SubmapId, Place>& places) {
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(path);

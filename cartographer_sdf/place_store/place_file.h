@@ -33,6 +33,9 @@ struct PlaceFileKey {
 [[nodiscard]] absl::StatusOr<PlaceFileKey> MakePlaceFileKey(
     const std::string& map_path, const std::string& options);
 
+// Whether it is a place file, of whatever map; false if it cannot be read.
+[[nodiscard]] bool IsPlaceFile(const std::string& path);
+
 [[nodiscard]] absl::Status WritePlaces(const std::string& path,
                                        const PlaceFileKey& key,
                                        const std::map<SubmapId, Place>& places);

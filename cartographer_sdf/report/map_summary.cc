@@ -71,10 +71,9 @@ Rows DescribeSubmaps(const MapState& map) {
   }
   std::string submaps =
       absl::StrFormat("%d (%d finished)", map.submaps.size(), num_finished);
-  const size_t num_poses = map.pose_graph.submap_poses.size();
-  if (num_poses > map.submaps.size()) {
+  if (map.num_unrecorded_submaps > 0) {
     absl::StrAppendFormat(&submaps, ", and %d poses without a submap",
-                          num_poses - map.submaps.size());
+                          map.num_unrecorded_submaps);
   }
   std::vector<std::string> kinds;
   if (num_probability > 0) {
@@ -168,7 +167,12 @@ std::string DescribeMap(const std::string& name, const MapState& map) {
   for (std::vector<std::string>& line : DescribeSubmaps(map)) {
     lines.push_back(std::move(line));
   }
-  lines.push_back({"nodes", absl::StrCat(map.pose_graph.nodes.size())});
+  std::string nodes = absl::StrCat(map.pose_graph.nodes.size());
+  if (map.num_unrecorded_nodes > 0) {
+    absl::StrAppend(&nodes, ", ", map.num_unrecorded_nodes,
+                    " of them without data: the file was cut");
+  }
+  lines.push_back({"nodes", nodes});
   lines.push_back({"constraints", DescribeConstraints(map)});
   lines.push_back(
       {"landmarks", absl::StrCat(map.pose_graph.landmark_poses.size())});

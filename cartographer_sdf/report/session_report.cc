@@ -79,7 +79,8 @@ absl::Status ReadPart(const MapPart& part,
                       const std::map<SubmapId, OccupancyGrid>& but,
                       const ProgressCallback& on_progress,
                       const SubmapCallback& on_submap) {
-  return ReadMap(part.path,
+  // What is missing was refused or dropped when the map was read for the work.
+  return ReadMap({part.path, MissingRecords::kKeep},
                  {[&](const SubmapId& id, const SubmapSummary& summary,
                       const OccupancyGrid& grid) {
                    if (but.count(id) > 0) return;

@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/geometry/rigid3.h"
 #include "cartographer_sdf/pbstream/grid_conversion.h"
+#include "cartographer_sdf/pbstream/map_reader.h"
 #include "cartographer_sdf/pbstream/point_cloud_codec.h"
 #include "cartographer_sdf/pbstream/pose_codec.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
@@ -160,6 +161,7 @@ absl::Status WriteSimulatedMap(const SimulatedMap& map,
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(map_path);
   if (!writer.ok()) return writer.status();
   absl::Status status = WriteRecords(map, &*writer);
+  if (status.ok()) status = CheckLoads(*writer);
   if (status.ok()) status = WriteTruth(truth_path, TruthOf(map));
   if (status.ok()) status = writer->Commit();
   return status;

@@ -20,6 +20,7 @@ namespace cartographer_sdf {
 namespace {
 
 void PrintSummary(const Audit& audit) {
+  PrintRepair(audit.state);
   std::map<AuditVerdict, int> verdicts;
   for (const AuditedConstraint& constraint : audit.constraints) {
     ++verdicts[constraint.verdict];
@@ -43,7 +44,7 @@ absl::Status RunAudit() {
   const Options& options = task->options;
   StageProgress progress;
   const absl::StatusOr<Audit> audit =
-      AuditMap(options.loop_closing, options.audit, FLAGS_input,
+      AuditMap(options.loop_closing, options.audit, SourceOfFlags(FLAGS_input),
                task->frozen_trajectories, task->executor, progress.Callback());
   if (!audit.ok()) return audit.status();
   absl::Status status;
@@ -69,19 +70,27 @@ Subcommand AuditSubcommand() {
   return Subcommand{
       "audit",
       "find the constraints of a map that are doubtful",
-      "--input A.pbstream [--output B.pbstream] [--report DIR] "
-      "[--constraints C.csv]",
+      "--input A.pbstream [--output B.pbstream | --in_place] [--report DIR] "
+      "[--constraints C.csv] [--repair]",
       "Checks every inter-submap constraint: whether walls of one submap stand "
       "in free space of the other at the constraint's pose, whether another "
       "pose of the two submaps is as good, whether the constraint agrees with "
       "the others in cycles, and whether the map made without doubtful "
       "constraints contradicts it. With --output, writes the map without the "
-      "doubtful constraints, optimised again; everything else in the file "
-      "stays unchanged.\n\n"
-      "A map without doubtful constraints is written unchanged.",
-      {"input"},
-      {"output", "report", "constraints", "frozen_trajectories",
-       "configuration_directory", "configuration_basename", "threads"},
+      "doubtful constraints, optimised again; every other record of the "
+      "file stays as it is.\n\n"
+      "A map without doubtful constraints is copied, byte for byte.",
+      {{"input", FileUse::kRead}},
+      {{"output", FileUse::kCopyMap},
+       {"report", FileUse::kWriteInto, {"index.html"}},
+       {"constraints", FileUse::kWriteText},
+       "in_place",
+       "backup",
+       "repair",
+       "frozen_trajectories",
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunAudit};
 }
 

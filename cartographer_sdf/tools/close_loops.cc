@@ -32,6 +32,7 @@ absl::Status WriteClosures(const std::string& path,
 }
 
 void PrintSummary(const LoopClosingResult& result) {
+  PrintRepair(result.state);
   std::cout << absl::StrFormat(
       "%d submaps, %d matches accepted by verification\n", result.num_places,
       result.closed.closures.size());
@@ -56,8 +57,8 @@ absl::Status RunCloseLoops() {
   if (!task.ok()) return task.status();
   StageProgress progress;
   const absl::StatusOr<LoopClosingResult> result = CloseLoops(
-      task->options.loop_closing, FLAGS_input, task->frozen_trajectories,
-      task->executor, progress.Callback());
+      task->options.loop_closing, SourceOfFlags(FLAGS_input),
+      task->frozen_trajectories, task->executor, progress.Callback());
   if (!result.ok()) return result.status();
   absl::Status status;
   if (!FLAGS_closures.empty()) {
@@ -82,17 +83,24 @@ Subcommand CloseLoopsSubcommand() {
   return Subcommand{
       "close_loops",
       "find the loop closures of a map and optimise it",
-      "--input A.pbstream --output B.pbstream [--closures C.csv] "
-      "[--report DIR]",
+      "--input A.pbstream (--output B.pbstream | --in_place) "
+      "[--closures C.csv] [--report DIR] [--repair]",
       "Finds submaps that see the same place by the shape of their free space, "
       "without a pose prior; verifies the matches; keeps a mutually consistent "
       "set; adds it to the pose graph as inter-submap constraints; optimises; "
-      "and writes a map that Cartographer's own tools load. Everything else in "
-      "the file stays unchanged.\n\n"
-      "A map without new closures is written unchanged.",
-      {"input", "output"},
-      {"closures", "report", "frozen_trajectories", "configuration_directory",
-       "configuration_basename", "threads"},
+      "and writes a map that Cartographer's own tools load. Every other record "
+      "of the file stays as it is.\n\n"
+      "A map without new closures is copied, byte for byte.",
+      {{"input", FileUse::kRead}, {"output", FileUse::kCopyMap}},
+      {{"closures", FileUse::kWriteText},
+       {"report", FileUse::kWriteInto, {"index.html"}},
+       "in_place",
+       "backup",
+       "repair",
+       "frozen_trajectories",
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunCloseLoops};
 }
 

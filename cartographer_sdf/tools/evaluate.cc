@@ -165,10 +165,6 @@ Measurement MeasureAccepted(const std::string& subject,
            {"queries_right", score.num_queries_right}}};
 }
 
-std::vector<std::string> FilesOf(const std::string& flag) {
-  return absl::StrSplit(flag, ',', absl::SkipEmpty());
-}
-
 // Names of the results of each table of matches; with several tables, after
 // their files.
 std::string SeriesName(const std::string& path) {
@@ -192,6 +188,9 @@ absl::StatusOr<PairTruths> PairTruthsOfFlags(const EvaluatedMap& map,
     if (!query.ok()) return query.status();
     const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
     if (!query_truth.ok()) return query_truth.status();
+    const absl::Status status = CheckIsTruthOf(FLAGS_query, query->pose_graph,
+                                               FLAGS_query_truth, *query_truth);
+    if (!status.ok()) return status;
     pairs =
         ComputePairTruths(map.observed, truth, query->observed, *query_truth);
   }
@@ -204,9 +203,9 @@ absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
                                  std::vector<NamedCurve>* const curves) {
   const absl::StatusOr<PairTruths> pairs = PairTruthsOfFlags(map, truth);
   if (!pairs.ok()) return pairs.status();
-  const std::vector<std::string> files = FilesOf(FLAGS_matches);
+  const std::vector<std::string> files = SplitPaths(FLAGS_matches);
   std::vector<Measurement> accepted;
-  const std::vector<std::string> label_files = FilesOf(FLAGS_labels);
+  const std::vector<std::string> label_files = SplitPaths(FLAGS_labels);
   for (size_t k = 0; k < files.size(); ++k) {
     absl::StatusOr<std::vector<MatchRow>> matches = ReadMatches(files[k]);
     if (!matches.ok()) return matches.status();
@@ -287,7 +286,7 @@ absl::Status CheckFlags() {
        "--query and --query_truth need each other"},
       {has_matches || FLAGS_query.empty(), "--query needs --matches"},
       {FLAGS_labels.empty() ||
-           FilesOf(FLAGS_labels).size() == FilesOf(FLAGS_matches).size(),
+           SplitPaths(FLAGS_labels).size() == SplitPaths(FLAGS_matches).size(),
        "--labels needs --matches, a file for each"},
       {has_truth || !WantsRandomPairs(), "--random_pairs needs --truth"},
       {FLAGS_free_space_plot.empty() || WantsRandomPairs(),
@@ -306,8 +305,6 @@ absl::Status CheckFlags() {
 }
 
 absl::Status RunEvaluate() {
-  absl::Status status = CheckFlags();
-  if (!status.ok()) return status;
   Truth truth;
   if (!FLAGS_truth.empty()) {
     absl::StatusOr<Truth> read = ReadTruth(FLAGS_truth);
@@ -317,6 +314,9 @@ absl::Status RunEvaluate() {
   const absl::StatusOr<EvaluatedMap> map =
       ReadEvaluatedMap(FLAGS_input, !FLAGS_matches.empty());
   if (!map.ok()) return map.status();
+  absl::Status status =
+      CheckIsTruthOf(FLAGS_input, map->pose_graph, FLAGS_truth, truth);
+  if (!status.ok()) return status;
   std::vector<Measurement> measurements;
   std::vector<NamedCurve> curves;
   if (!FLAGS_relations.empty()) {
@@ -363,25 +363,25 @@ constexpr char kDescription[] =
 }  // namespace
 
 Subcommand Evaluate() {
-  return Subcommand{
+  Subcommand subcommand{
       "evaluate",
       "measure the errors of a map and of matches",
       "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
       "[--random_pairs N]]",
       kDescription,
-      {"input"},
-      {"relations",
+      {{"input", FileUse::kRead}},
+      {{"relations", FileUse::kRead},
        "seconds_per_scan",
-       "truth",
-       "matches",
-       "labels",
-       "query",
-       "query_truth",
+       {"truth", FileUse::kRead},
+       {"matches", FileUse::kReadList},
+       {"labels", FileUse::kWriteTextList},
+       {"query", FileUse::kRead},
+       {"query_truth", FileUse::kRead},
        "positive_overlap",
-       "csv",
-       "curves",
-       "plot",
-       "free_space_plot",
+       {"csv", FileUse::kWriteText},
+       {"curves", FileUse::kWriteText},
+       {"plot", FileUse::kWriteText},
+       {"free_space_plot", FileUse::kWriteText},
        "random_pairs",
        "methods",
        "pair_seed",
@@ -392,6 +392,8 @@ Subcommand Evaluate() {
        "configuration_basename",
        "threads"},
       &RunEvaluate};
+  subcommand.check_flags = &CheckFlags;
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

@@ -119,7 +119,9 @@ Subcommand FalsifySubcommand() {
       "optimises, so that the map is distorted as Cartographer's would be. "
       "--wrong_constraints lists them: the constraint's index in the file, its "
       "kind, and the number of its pair.",
-      {"input", "output", "wrong_constraints"},
+      {{"input", FileUse::kRead},
+       {"output", FileUse::kCopyMap},
+       {"wrong_constraints", FileUse::kWriteText}},
       {"kinds", "pairs", "seed", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},
       &RunFalsify};

@@ -353,9 +353,14 @@ Subcommand Figures() {
       "submaps on the map with the paths of the robot (match_map.png; "
       "reference blue, query red, features that agree black) and laid over "
       "each other (match_pair.png).",
-      {"input", "output"},
-      {"query", "submap", "matches", "method", "figure_pixels",
-       "configuration_directory", "configuration_basename"},
+      {{"input", FileUse::kRead}, {"output", FileUse::kWriteInto}},
+      {{"query", FileUse::kRead},
+       "submap",
+       {"matches", FileUse::kRead},
+       "method",
+       "figure_pixels",
+       "configuration_directory",
+       "configuration_basename"},
       &RunFigures};
 }
 

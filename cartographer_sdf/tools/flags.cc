@@ -22,7 +22,9 @@ DEFINE_string(
     query, "",
     "Second map, whose submaps are searched for in --input or --map. In match, "
     "if empty, the submaps of --input are matched with each other.");
-DEFINE_string(output, "", "File to write (figures: directory).");
+DEFINE_string(output, "",
+              "File to write (figures: directory). A table can be written to "
+              "the standard output: -.");
 DEFINE_string(places, "",
               "File that caches the descriptions of the submaps of --input "
               "(match) or --map, so that later runs start faster. Written if "
@@ -55,7 +57,7 @@ namespace {
 constexpr int kMaxThreads = 1024;
 
 std::vector<std::string> GivenDirectories() {
-  return absl::StrSplit(FLAGS_configuration_directory, ',', absl::SkipEmpty());
+  return SplitPaths(FLAGS_configuration_directory);
 }
 
 }  // namespace

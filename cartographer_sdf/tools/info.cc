@@ -53,8 +53,8 @@ absl::Status RunInfo() {
       scans.emplace(id, std::move(scan));
     };
   }
-  const absl::StatusOr<MapState> state =
-      ReadMap(FLAGS_input, visitor, progress.Begin("read"));
+  const absl::StatusOr<MapState> state = ReadMap(
+      {FLAGS_input, MissingRecords::kKeep}, visitor, progress.Begin("read"));
   if (!state.ok()) return state.status();
   absl::StatusOr<std::string> torn_submaps;
   if (FLAGS_torn_submaps) {
@@ -75,7 +75,7 @@ Subcommand Info() {
       "Prints the format, trajectories, submaps, constraints and records of a "
       "map of Cartographer 2D and, with --torn_submaps, the submaps that local "
       "SLAM tore. Does not change the map.",
-      {"input"},
+      {{"input", FileUse::kRead}},
       {"torn_submaps", "configuration_directory", "configuration_basename",
        "threads"},
       &RunInfo};

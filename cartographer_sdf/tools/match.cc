@@ -89,8 +89,8 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
     return DescribeMapOfFlags(stages, path, executor, PointClouds::kDrop,
                               on_progress);
   }
-  return DescribeMap(stages.place, stages.recognition.match, path, executor,
-                     on_progress);
+  return DescribeMap(stages.place, stages.recognition.match,
+                     SourceOfFlags(path), executor, on_progress);
 }
 
 // The map and, if there is one, the query.
@@ -187,6 +187,7 @@ absl::Status RunMatch() {
   const auto num_accepted =
       std::count_if(rows.begin(), rows.end(),
                     [](const MatchRow& row) { return row.accepted; });
+  for (const DescribedMap& map : *maps) PrintRepair(map.state);
   std::cout << rows.size() << " pairs of submaps with a pose, " << num_accepted
             << " accepted: " << FLAGS_output << "\n";
   return absl::OkStatus();
@@ -214,10 +215,20 @@ Subcommand MatchSubcommand() {
       "With --agree, a match is no longer accepted if matches with more weight "
       "contradict it through the odometry between them, or if it is uncertain "
       "and no other supports it. Its verdict gives the reason.",
-      {"input", "output"},
-      {"query", "method", "all_pairs", "places", "alone", "agree", "terms",
-       "neighbour_terms", "options_in_force", "configuration_directory",
-       "configuration_basename", "threads"},
+      {{"input", FileUse::kRead}, {"output", FileUse::kWriteText}},
+      {{"query", FileUse::kRead},
+       "method",
+       "all_pairs",
+       {"places", FileUse::kCache},
+       "alone",
+       "agree",
+       "repair",
+       {"terms", FileUse::kWriteText},
+       {"neighbour_terms", FileUse::kWriteText},
+       {"options_in_force", FileUse::kWriteText},
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunMatch};
 }
 

@@ -9,7 +9,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/report/json.h"
@@ -19,13 +18,16 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(inputs, "", "Maps to merge, separated by commas.");
+DEFINE_string(inputs, "",
+              "Maps to merge, separated by commas; a comma in a path is "
+              "written \\,.");
 DECLARE_string(result);
 
 namespace cartographer_sdf {
 namespace {
 
 void PrintSummary(const MergingResult& result) {
+  PrintRepair(result.state);
   for (size_t k = 0; k < result.sessions.size(); ++k) {
     const MergedSession& session = result.sessions[k];
     std::cout << absl::StrFormat("%3d  %s: ", k + 1, session.path);
@@ -48,15 +50,13 @@ void PrintSummary(const MergingResult& result) {
   PrintStages(result.stage_seconds);
 }
 
-absl::StatusOr<std::vector<std::string>> InputsOfFlags() {
-  std::vector<std::string> inputs =
-      absl::StrSplit(FLAGS_inputs, ',', absl::SkipEmpty());
+absl::StatusOr<std::vector<MapSource>> InputsOfFlags() {
+  std::vector<MapSource> inputs;
+  for (const std::string& path : SplitPaths(FLAGS_inputs)) {
+    inputs.push_back(SourceOfFlags(path));
+  }
   if (inputs.size() < 2) {
     return UsageError("--inputs needs two maps at least, separated by commas");
-  }
-  for (const std::string& input : inputs) {
-    absl::Status status = CheckIsNoInput(input, FLAGS_output);
-    if (!status.ok()) return status;
   }
   return inputs;
 }
@@ -86,7 +86,7 @@ absl::Status WriteFiles(const Options& options, const MergingResult& result,
 absl::Status RunMerge() {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("merge");
   if (!task.ok()) return task.status();
-  const absl::StatusOr<std::vector<std::string>> inputs = InputsOfFlags();
+  const absl::StatusOr<std::vector<MapSource>> inputs = InputsOfFlags();
   if (!inputs.ok()) return inputs.status();
   const Options& options = task->options;
   StageProgress progress;
@@ -120,9 +120,14 @@ Subcommand MergeSubcommand() {
       "and reports the other maps. Writes no map if none are connected, or if "
       "the merged map would be folded.\n\n"
       "--frozen_trajectories refers to the first map.",
-      {"inputs", "output"},
-      {"result", "report", "frozen_trajectories", "configuration_directory",
-       "configuration_basename", "threads"},
+      {{"inputs", FileUse::kReadList}, {"output", FileUse::kCopyMap}},
+      {{"result", FileUse::kWriteText},
+       {"report", FileUse::kWriteInto, {"index.html"}},
+       "repair",
+       "frozen_trajectories",
+       "configuration_directory",
+       "configuration_basename",
+       "threads"},
       &RunMerge};
 }
 

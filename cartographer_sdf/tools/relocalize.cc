@@ -63,7 +63,9 @@ absl::StatusOr<std::optional<TimeWindow>> WindowOfFlags() {
   return TimeWindow{FLAGS_start_seconds, FLAGS_first_seconds};
 }
 
-absl::Status CheckNumStarts() {
+absl::Status CheckFlagsOfRelocalize() {
+  const absl::Status window = WindowOfFlags().status();
+  if (!window.ok()) return window;
   if (!IsGiven("num_starts")) return absl::OkStatus();
   if (FLAGS_num_starts < 1 || FLAGS_num_starts > 10000) {
     return UsageError("--num_starts must lie between 1 and 10000");
@@ -81,7 +83,8 @@ absl::Status CheckNumStarts() {
 absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
                            StageProgress* const progress) {
   const Options& options = task.options;
-  const absl::StatusOr<DescribedMap> query = ReadMapWithScans(FLAGS_query);
+  const absl::StatusOr<DescribedMap> query =
+      ReadMapWithScans(SourceOfFlags(FLAGS_query));
   if (!query.ok()) return query.status();
   double longest = 0.;
   for (const auto& [id, summary] : SummarizeTrajectories(query->state)) {
@@ -180,8 +183,8 @@ absl::Status RunOnce(const MapTask& task,
                      StageProgress* const progress) {
   const Options& options = task.options;
   const absl::StatusOr<Session> query = DescribeSession(
-      options.loop_closing, options.scan_places, FLAGS_query, window,
-      task.executor, progress->Begin("read and describe the query"));
+      options.loop_closing, options.scan_places, SourceOfFlags(FLAGS_query),
+      window, task.executor, progress->Begin("read and describe the query"));
   if (!query.ok()) return query.status();
   LocalizationOptions localization = options.localization;
   if (!FLAGS_output.empty()) {
@@ -196,6 +199,8 @@ absl::Status RunOnce(const MapTask& task,
   const absl::Status status =
       WriteFiles(task, map_session, *query, result, progress);
   if (!status.ok()) return status;
+  PrintRepair(map_session.map.state);
+  PrintRepair(query->map.state);
   PrintSummary(result);
   if (!FLAGS_result.empty()) std::cout << FLAGS_result << "\n";
   PrintPaths();
@@ -207,11 +212,6 @@ absl::Status RunRelocalize() {
   if (!task.ok()) return task.status();
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
-  if (absl::Status status = CheckNumStarts(); !status.ok()) return status;
-  for (const std::string& input : {FLAGS_map, FLAGS_query}) {
-    absl::Status status = CheckIsNoInput(input, FLAGS_output);
-    if (!status.ok()) return status;
-  }
   StageProgress progress;
   absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
       task->options.loop_closing, FLAGS_map, task->executor,
@@ -226,7 +226,7 @@ absl::Status RunRelocalize() {
 }  // namespace
 
 Subcommand RelocalizeSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "relocalize",
       "find a map, or the start of a drive, in a map",
       "--map A.pbstream --query B.pbstream [--first_seconds N] "
@@ -239,11 +239,21 @@ Subcommand RelocalizeSubcommand() {
       "With --output, writes both maps as one: the query is attached to the "
       "map of --map, which does not move, and optimised. It is then an error "
       "if the query is not localized.",
-      {"map", "query"},
-      {"first_seconds", "start_seconds", "num_starts", "result", "output",
-       "report", "places", "configuration_directory", "configuration_basename",
+      {{"map", FileUse::kRead}, {"query", FileUse::kRead}},
+      {"first_seconds",
+       "start_seconds",
+       "num_starts",
+       {"result", FileUse::kWriteText},
+       {"output", FileUse::kCopyMap},
+       {"report", FileUse::kWriteInto, {"index.html"}},
+       {"places", FileUse::kCache},
+       "repair",
+       "configuration_directory",
+       "configuration_basename",
        "threads"},
       &RunRelocalize};
+  subcommand.check_flags = &CheckFlagsOfRelocalize;
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

@@ -5,7 +5,9 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -13,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "cartographer_sdf/file/pending_file.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/log_run.h"
 #include "cartographer_sdf/recording/carmen_log.h"
@@ -81,7 +85,7 @@ std::optional<T> GivenUnless(const T& absent, const T& value) {
 
 absl::StatusOr<std::vector<std::string>> Directories() {
   std::vector<std::string> directories =
-      absl::StrSplit(FLAGS_configuration_directories, ',', absl::SkipEmpty());
+      SplitPaths(FLAGS_configuration_directories);
   for (const std::string& directory : directories) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(directory, ignored)) {
@@ -113,6 +117,35 @@ absl::StatusOr<LogRunOptions> OptionsOfFlags() {
   options.output_path = GivenUnless(std::string(), FLAGS_output);
   options.real_time_factor = GivenUnless(0., FLAGS_real_time_factor);
   return options;
+}
+
+// The report draws the map from a file: if the user wants none, a temporary
+// one.
+std::filesystem::path TemporaryMapPath(const pid_t process) {
+  return std::filesystem::temp_directory_path() /
+         absl::StrCat(kProgram, "-", process, ".pbstream");
+}
+
+// Removes those that dead processes left.
+void RemoveTemporaryMaps() {
+  std::error_code error;
+  std::vector<std::filesystem::path> leftovers;
+  for (std::filesystem::directory_iterator
+           it(std::filesystem::temp_directory_path(), error),
+       end;
+       !error && it != end; it.increment(error)) {
+    const std::string stem = it->path().stem().string();
+    pid_t process = 0;
+    if (absl::SimpleAtoi(absl::StripPrefix(stem, absl::StrCat(kProgram, "-")),
+                         &process) &&
+        process > 0 && it->path() == TemporaryMapPath(process) &&
+        kill(process, 0) != 0 && errno == ESRCH) {
+      leftovers.push_back(it->path());
+    }
+  }
+  for (const std::filesystem::path& path : leftovers) {
+    std::filesystem::remove(path, error);
+  }
 }
 
 absl::StatusOr<Recording> RecordingOfFlags() {
@@ -165,10 +198,8 @@ absl::Status RunLogOfFlags() {
   if (FLAGS_report.empty() || options->output_path) {
     return RunAndReport(*recording, *options);
   }
-  // The report draws the map from a file: a temporary one.
-  options->output_path = (std::filesystem::temp_directory_path() /
-                          absl::StrCat(kProgram, "-", getpid(), ".pbstream"))
-                             .string();
+  RemoveTemporaryMaps();
+  options->output_path = TemporaryMapPath(getpid()).string();
   const absl::Status status = RunAndReport(*recording, *options);
   std::error_code ignored;
   std::filesystem::remove(*options->output_path, ignored);
@@ -188,10 +219,18 @@ Subcommand RunLogCommand() {
       "Prints a summary to the standard output and writes the map to --output. "
       "--report gets index.html to read, and run.json and nodes.csv for "
       "programs.",
-      {"log", "configuration_basename"},
-      {"configuration_directories", "sdf_configuration_basename", "map",
-       "output", "report", "start", "duration", "real_time_factor",
-       "field_of_view", "seconds_per_scan", "verbose"},
+      {{"log", FileUse::kRead}, "configuration_basename"},
+      {"configuration_directories",
+       "sdf_configuration_basename",
+       {"map", FileUse::kRead},
+       {"output", FileUse::kWriteMap},
+       {"report", FileUse::kWriteInto, {"index.html", "run.json", "nodes.csv"}},
+       "start",
+       "duration",
+       "real_time_factor",
+       "field_of_view",
+       "seconds_per_scan",
+       "verbose"},
       &RunLogOfFlags,
       kProgram};
 }
@@ -201,6 +240,7 @@ Subcommand RunLogCommand() {
 
 int main(int argc, char** argv) {
   cartographer_sdf::KeepFreedMemory();
+  cartographer_sdf::RemovePendingFilesOnSignals();
   google::InitGoogleLogging(argc > 0 ? argv[0] : cartographer_sdf::kProgram);
   // All messages go only to the sink, not to files.
   FLAGS_stderrthreshold = google::NUM_SEVERITIES;

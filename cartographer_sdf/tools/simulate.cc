@@ -96,11 +96,23 @@ Subcommand SimulateSubcommand() {
       "Drives a robot with a ray-cast lidar and drifting odometry through a "
       "building. Writes the map that Cartographer would have saved without "
       "loop closing, and the true poses of its submaps and nodes.",
-      {"output", "truth"},
-      {"map", "map_resolution", "plan_seed", "plan_width", "plan_height",
-       "plan_wall_thickness", "plan_furniture", "glass_fronts", "glass_echo",
-       "open_tables", "walking_people", "standing_people", "lidar_range",
-       "lidar_field_of_view", "length", "seed"},
+      {{"output", FileUse::kWriteMap}, {"truth", FileUse::kWriteText}},
+      {{"map", FileUse::kRead},
+       "map_resolution",
+       "plan_seed",
+       "plan_width",
+       "plan_height",
+       "plan_wall_thickness",
+       "plan_furniture",
+       "glass_fronts",
+       "glass_echo",
+       "open_tables",
+       "walking_people",
+       "standing_people",
+       "lidar_range",
+       "lidar_field_of_view",
+       "length",
+       "seed"},
       &RunSimulate};
 }
 

@@ -3,15 +3,34 @@
 
 #include "cartographer_sdf/tools/stages.h"
 
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/file/pending_file.h"
+#include "cartographer_sdf/tools/file_flags.h"
 #include "cartographer_sdf/tools/flags.h"
 
 namespace cartographer_sdf {
+namespace {
+
+// If the map is changed in place, keeps the old one first. At every moment
+// there is a whole map under the name of the input.
+absl::Status CommitOutput(RecordWriter* const output) {
+  const std::string backup = FLAGS_in_place ? BackupPath(FLAGS_input) : "";
+  if (backup.empty()) return output->Commit();
+  absl::Status status = KeepAs(FLAGS_input, backup);
+  if (!status.ok()) return status;
+  status = output->Commit();
+  std::error_code ignored;
+  if (!status.ok()) std::filesystem::remove(backup, ignored);
+  return status;
+}
+
+}  // namespace
 
 absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
   absl::StatusOr<Options> options = LoadOptionsOfFlags();
@@ -36,12 +55,12 @@ absl::StatusOr<DescribedMap> DescribeMapOfFlags(
     const ProgressCallback& on_progress) {
   const MatchOptions& match = options.recognition.match;
   if (FLAGS_places.empty()) {
-    return DescribeMap(options.place, match, path, executor, on_progress,
-                       point_clouds);
+    return DescribeMap(options.place, match, SourceOfFlags(path), executor,
+                       on_progress, point_clouds);
   }
   absl::StatusOr<RememberedMap> remembered = RememberMap(
-      options.place, match, FormatPlaceOptions(options.place, match), path,
-      FLAGS_places, executor, on_progress, point_clouds);
+      options.place, match, FormatPlaceOptions(options.place, match),
+      SourceOfFlags(path), FLAGS_places, executor, on_progress, point_clouds);
   if (!remembered.ok()) return remembered.status();
   if (!remembered->complaint.empty()) {
     std::cerr << "--places: " << remembered->complaint << "\n";
@@ -57,12 +76,13 @@ absl::Status WriteMapAndReport(
   const auto read_and_write =
       [&](const SubmapCallback& on_submap) -> absl::Status {
     if (FLAGS_output.empty()) {
-      return ReadMap(FLAGS_input, {on_submap, {}}, progress->Begin("report"))
+      return ReadMap(SourceOfFlags(FLAGS_input), {on_submap, {}},
+                     progress->Begin("report"))
           .status();
     }
     absl::StatusOr<RecordWriter> map =
-        PrepareMap(FLAGS_input, FLAGS_output, pose_graph, {on_submap, {}},
-                   progress->Begin("write"));
+        PrepareMap(SourceOfFlags(FLAGS_input), FLAGS_output, pose_graph,
+                   {on_submap, {}}, progress->Begin("write"));
     if (map.ok()) output.emplace(*std::move(map));
     return map.status();
   };
@@ -72,7 +92,7 @@ absl::Status WriteMapAndReport(
   } else if (!FLAGS_output.empty()) {
     status = read_and_write({});
   }
-  return status.ok() && output ? output->Commit() : status;
+  return status.ok() && output ? CommitOutput(&*output) : status;
 }
 
 void PrintStages(const std::vector<std::pair<std::string, double>>& seconds) {
@@ -99,6 +119,9 @@ void PrintConvergence(const std::vector<OptimizationSummary>& summaries) {
 
 void PrintPaths() {
   if (!FLAGS_output.empty()) std::cout << FLAGS_output << "\n";
+  if (FLAGS_in_place && FLAGS_backup) {
+    std::cout << BackupPath(FLAGS_input) << " (the old map)\n";
+  }
   if (!FLAGS_report.empty()) std::cout << FLAGS_report << "/index.html\n";
 }
 

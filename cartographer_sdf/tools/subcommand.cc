@@ -54,9 +54,11 @@ std::string ShortDefault(const gflags::CommandLineFlagInfo& info) {
 }
 
 std::vector<std::string> FlagsOf(const Subcommand& subcommand) {
-  std::vector<std::string> names = subcommand.required_flags;
-  names.insert(names.end(), subcommand.optional_flags.begin(),
-               subcommand.optional_flags.end());
+  std::vector<std::string> names;
+  for (const auto* const flags :
+       {&subcommand.required_flags, &subcommand.optional_flags}) {
+    for (const SubcommandFlag& flag : *flags) names.push_back(flag.name);
+  }
   return names;
 }
 
@@ -131,11 +133,11 @@ std::string HelpText(const Subcommand& subcommand) {
     absl::StrAppend(&text, "\n", Wrap(subcommand.description, 0));
   }
   absl::StrAppend(&text, "\nFlags:\n");
-  for (const std::string& name : subcommand.required_flags) {
-    text += HelpOfFlag(name, true);
+  for (const SubcommandFlag& flag : subcommand.required_flags) {
+    text += HelpOfFlag(flag.name, true);
   }
-  for (const std::string& name : subcommand.optional_flags) {
-    text += HelpOfFlag(name, false);
+  for (const SubcommandFlag& flag : subcommand.optional_flags) {
+    text += HelpOfFlag(flag.name, false);
   }
   return text;
 }
@@ -167,15 +169,28 @@ std::string TypeOf(const std::string& flag) {
 }
 
 absl::Status CheckRequired(const Subcommand& subcommand) {
-  for (const std::string& name : subcommand.required_flags) {
-    if (gflags::GetCommandLineFlagInfoOrDie(name.c_str())
+  for (const SubcommandFlag& flag : subcommand.required_flags) {
+    if (gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str())
             .current_value.empty()) {
       return UsageError(absl::StrCat(
-          "--", name, " is missing; usage: ", subcommand.Invocation(), " ",
+          "--", flag.name, " is missing; usage: ", subcommand.Invocation(), " ",
           subcommand.usage));
     }
   }
   return absl::OkStatus();
+}
+
+absl::Status CheckAndRun(const Subcommand& subcommand) {
+  absl::Status status;
+  if (subcommand.check_flags != nullptr) status = subcommand.check_flags();
+  if (status.ok()) status = CheckFiles(subcommand);
+  if (!status.ok()) return status;
+  if (!WritesToStandardOutput(subcommand)) return subcommand.run();
+  // A table has the standard output to itself.
+  std::streambuf* const standard_output = std::cout.rdbuf(std::cerr.rdbuf());
+  status = subcommand.run();
+  std::cout.rdbuf(standard_output);
+  return status;
 }
 
 }  // namespace
@@ -243,7 +258,8 @@ absl::Status SetFlags(const Subcommand& subcommand,
                                      type, ", it is '", *flag->value, "'"));
     }
   }
-  return CheckRequired(subcommand);
+  absl::Status status = ApplyInPlace(subcommand);
+  return status.ok() ? CheckRequired(subcommand) : status;
 }
 
 int RunSubcommand(const Subcommand& subcommand,
@@ -253,7 +269,7 @@ int RunSubcommand(const Subcommand& subcommand,
     return kDone;
   }
   absl::Status status = SetFlags(subcommand, arguments);
-  if (status.ok()) status = subcommand.run();
+  if (status.ok()) status = CheckAndRun(subcommand);
   if (status.ok() && !std::cout.flush()) {
     status = absl::UnavailableError("cannot write to the standard output");
   }

@@ -4,7 +4,8 @@
 // The subcommands of the program, and its command line. gflags holds the flags,
 // but its parser exits with code 1 and accepts every flag that is linked in. To
 // add a subcommand, add a file with a function "Subcommand Foo()" that names
-// its flags and the function to run, and list it in AllSubcommands.
+// its flags, what becomes of the files that they name, and the function to run,
+// and list it in AllSubcommands.
 
 #ifndef CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
 #define CARTOGRAPHER_SDF_TOOLS_SUBCOMMAND_H_
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "cartographer_sdf/tools/file_flags.h"
 
 namespace cartographer_sdf {
 
@@ -32,14 +34,17 @@ struct Subcommand {
   std::string usage;
   // The help beyond the summary; empty lines separate paragraphs.
   std::string description;
-  // Names of gflags. Required flags must be given and not empty; flags in
-  // neither list are a usage error.
-  std::vector<std::string> required_flags;
-  std::vector<std::string> optional_flags;
+  // Required flags must be given and not empty; flags in neither list are a
+  // usage error. The files that they name are checked before the run.
+  std::vector<SubcommandFlag> required_flags;
+  std::vector<SubcommandFlag> optional_flags;
   // Called once, with the flags set. An error prints its message as one line on
   // stderr and sets the exit code to 1, or 2 for a UsageError.
   absl::Status (*run)() = nullptr;
   std::string program = "cartographer_sdf";
+  // If not null, called before the files are checked: wrong combinations of
+  // flags are a UsageError.
+  absl::Status (*check_flags)() = nullptr;
   // For developers of the project: the general help does not list it.
   bool is_for_developers = false;
 

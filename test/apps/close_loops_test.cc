@@ -109,12 +109,21 @@ TEST_F(SimulatedOfficeTest, RemembersPlacesFromAFile) {
   const RememberedMap other = remember("other options");
   EXPECT_FALSE(other.is_from_file);
   EXPECT_THAT(other.complaint, ::testing::HasSubstr("other options"));
-  directory.Write("places", "nonsense");
+  const std::string whole = directory.Read("places");
+  directory.Write("places", whole.substr(0, whole.size() - 7));
   const RememberedMap broken = remember("other options");
   EXPECT_FALSE(broken.is_from_file);
   EXPECT_THAT(broken.complaint, ::testing::HasSubstr(file));
   EXPECT_EQ(broken.map.places.size(), first.map.places.size());
   EXPECT_TRUE(remember("other options").is_from_file);
+  // What was never a file of places is somebody's, and stays.
+  directory.Write("places", "a diary");
+  EXPECT_THAT(std::string(RememberMap(PlaceOptions(), MatchOptions(), "options",
+                                      MapPath(), file, Threads(2))
+                              .status()
+                              .message()),
+              ::testing::HasSubstr("is no file of places"));
+  EXPECT_EQ(directory.Read("places"), "a diary");
 }
 
 TEST_F(SimulatedOfficeTest, RetrievalKeepsTheClosures) {

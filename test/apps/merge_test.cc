@@ -57,9 +57,9 @@ class MergingTest : public ::testing::Test {
     LocalizationOptions credulous;
     credulous.placement.max_contradicting_fraction = 1.;
     credulous.placement.min_score = 1.;
-    absl::StatusOr<MergingResult> result =
-        MergeSessions(FoldCheckOptions(), credulous, ScanPlaceOptions(),
-                      LoopClosingOptions(), paths, {}, ThreadExecutor(2));
+    absl::StatusOr<MergingResult> result = MergeSessions(
+        FoldCheckOptions(), credulous, ScanPlaceOptions(), LoopClosingOptions(),
+        {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
     CHECK(result.ok()) << result.status();
     return *std::move(result);
   }

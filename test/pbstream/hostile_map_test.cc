@@ -11,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/pbstream/trajectory_record.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/small_map.h"
@@ -87,12 +89,14 @@ TEST_F(HostileMapTest, TheSmallMapIsValid) {
 }
 
 TEST_F(HostileMapTest, Truncated) {
-  const std::vector<std::string> records = SmallMap().Records();
+  const SmallMap map;
+  const std::vector<std::string> records = map.Records();
   const std::string bytes = Container(records);
-  // Behind the options, a file that ends between records is whole.
-  constexpr size_t kNumMandatory = 3;
+  // Behind the last node, a file that ends between records is whole, as far as
+  // one can tell.
+  const size_t num_mandatory = 3 + map.submaps.size() + map.nodes.size();
   std::set<size_t> ends;
-  for (size_t i = kNumMandatory; i <= records.size(); ++i) {
+  for (size_t i = num_mandatory; i <= records.size(); ++i) {
     ends.insert(
         Container({records.begin(), records.begin() + static_cast<long>(i)})
             .size());
@@ -124,8 +128,8 @@ TEST_F(HostileMapTest, Header) {
   EXPECT_EQ(
       ErrorOfChanged([](SmallMap* map) { map->header.set_format_version(3); }),
       path_ +
-          " has format version 3, but only versions 1 and 2 are "
-          "supported");
+          " has format version 3, but only versions 1 and 2 are supported; "
+          "Cartographer's `pbstream migrate` converts older files");
   EXPECT_THAT(
       ErrorOfRecords([](auto* records) { records->erase(records->begin()); }),
       HasSubstr("has format version 0"));
@@ -200,7 +204,7 @@ TEST_F(HostileMapTest, Nodes) {
   EXPECT_THAT(ErrorOfChanged([](SmallMap* map) {
                 map->nodes[1].mutable_node_id()->set_trajectory_id(4);
               }),
-              HasSubstr("(node 4,1) is not in the pose graph"));
+              HasSubstr("is of trajectory 4, which is not in the pose graph"));
   EXPECT_THAT(
       ErrorOfChanged([](SmallMap* map) {
         map->nodes[1].mutable_node_data()->mutable_gravity_alignment()->Clear();
@@ -214,6 +218,54 @@ TEST_F(HostileMapTest, Nodes) {
                     ->set_x(kNaN);
               }),
               HasSubstr("(node 5,1) has a rotation that is not a quaternion"));
+}
+
+TEST_F(HostileMapTest, NodesWithoutData) {
+  EXPECT_THAT(
+      ErrorOfChanged([](SmallMap* map) { map->nodes[1].clear_node_data(); }),
+      HasSubstr("(node 5,1) has no data"));
+}
+
+// The host looks up the trajectory of each record, and aborts.
+TEST_F(HostileMapTest, RecordsOfUnknownTrajectories) {
+  int num_records = 0;
+  const std::vector<std::string> records = SmallMap().Records();
+  for (size_t k = 3; k < records.size(); ++k) {
+    proto::SerializedData data;
+    ASSERT_TRUE(data.ParseFromString(records[k]));
+    if (!TrajectoryOfRecord(data)) continue;
+    ++num_records;
+    std::vector<std::string> changed = records;
+    changed[k] = WithTrajectory(records[k], data, 6);
+    EXPECT_THAT(ErrorOf(Container(changed)),
+                HasSubstr(absl::StrCat("record ", k + 1,
+                                       " is of trajectory 6, which is not in "
+                                       "the pose graph")));
+  }
+  EXPECT_EQ(num_records, 2 + 4 + 1 + 2 + 7 + 1);
+}
+
+TEST_F(HostileMapTest, SensorDataOutOfOrder) {
+  const auto add = [](const int64_t first, const int64_t second,
+                      const bool is_imu) {
+    return [first, second, is_imu](std::vector<std::string>* records) {
+      for (const int64_t time : {first, second}) {
+        proto::SerializedData data;
+        proto::SensorData& sensor = is_imu
+                                        ? *data.mutable_imu_data()
+                                        : *data.mutable_fixed_frame_pose_data();
+        sensor.set_trajectory_id(SmallMap::kTrajectory);
+        sensor.mutable_data()->set_timestamp(time);
+        records->push_back(data.SerializeAsString());
+      }
+    };
+  };
+  const int64_t later = SmallMap::NodeTime(100);
+  for (const bool is_imu : {false, true}) {
+    EXPECT_EQ(ErrorOfRecords(add(later, later + 1, is_imu)), "");
+    EXPECT_THAT(ErrorOfRecords(add(later, later, is_imu)),
+                HasSubstr("that is not in time order"));
+  }
 }
 
 TEST_F(HostileMapTest, Odometry) {
@@ -277,6 +329,11 @@ TEST_F(HostileMapTest, PoseGraphs) {
               }),
               HasSubstr("a constraint of submap 5,1 and node 5,9, which are "
                         "not both in it"));
+  EXPECT_THAT(error([](proto::PoseGraph* graph) {
+                *graph->add_constraint() = graph->constraint(1);
+              }),
+              HasSubstr("has the intra-submap constraint of submap 5,0 and "
+                        "node 5,1 twice"));
   EXPECT_THAT(error([](proto::PoseGraph* graph) {
                 graph->mutable_constraint(2)->set_tag(2);
               }),
@@ -393,8 +450,10 @@ TEST_F(HostileMapTest, MutatedRecords) {
     if (num_valid % 10 != 0) continue;
     const absl::Status status =
         WriteMap(path_, path_ + ".out", state->pose_graph);
-    ASSERT_TRUE(status.ok()) << status << " with seed " << seed;
-    ASSERT_TRUE(ReadMap(path_ + ".out").ok());
+    // Only what nobody looked at so far.
+    ASSERT_EQ(status.ok(), ReadPointClouds(path_, AllNodes()).ok())
+        << status << " with seed " << seed;
+    ASSERT_TRUE(!status.ok() || ReadMap(path_ + ".out").ok());
   }
   // Otherwise the mutations are too harmless or too harsh to tell anything.
   EXPECT_GT(num_valid, kNumMutants / 20);

@@ -137,7 +137,7 @@ TEST_F(JoinedMapFileTest, KeepsEveryByteButTheNumbers) {
     const std::optional<int> trajectory = TrajectoryOfRecord(Parse(record));
     if (trajectory) ++num_of_trajectory[*trajectory];
   }
-  EXPECT_THAT(num_of_trajectory, ElementsAre(Pair(0, 16), Pair(1, 16)));
+  EXPECT_THAT(num_of_trajectory, ElementsAre(Pair(0, 17), Pair(1, 17)));
 }
 
 TEST_F(JoinedMapFileTest, JoinsGraphsAndOptions) {
@@ -257,6 +257,25 @@ TEST_F(JoinedMapFileTest, ReadsEachPartOnce) {
   EXPECT_EQ(first.Count(), 3);
   EXPECT_EQ(second.Count(), 3);
   EXPECT_TRUE(ReadFile(output_) == expected);
+}
+
+TEST_F(JoinedMapFileTest, LeavesOutWhatHasNoRecord) {
+  second_.nodes.resize(2);
+  WriteFile(paths_[1], Container(RecordsOf(second_)));
+  const absl::StatusOr<MapState> first = ReadMap(paths_[0]);
+  const absl::StatusOr<MapState> second =
+      ReadMap({paths_[1], MissingRecords::kDrop});
+  ASSERT_TRUE(first.ok() && second.ok());
+  parts_ = NumberTrajectories(paths_, {&*first, &*second});
+  MapState joined;
+  AppendMap(parts_[0], *first, &joined);
+  AppendMap(parts_[1], *second, &joined);
+  EXPECT_EQ(joined.num_unrecorded_nodes, 2);
+  ASSERT_TRUE(WriteJoinedMap(parts_, joined.pose_graph, output_).ok());
+  const absl::StatusOr<MapState> read = ReadMap(output_);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(read->pose_graph.nodes.size(), 6u);
+  EXPECT_EQ(read->pose_graph.constraints.size(), 8u);
 }
 
 TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {

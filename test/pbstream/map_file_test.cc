@@ -97,7 +97,7 @@ TEST_F(MapFileTest, CountsRecords) {
       state.num_records,
       UnorderedElementsAre(
           Pair("pose_graph", 1), Pair("all_trajectory_builder_options", 1),
-          Pair("submap", 2), Pair("node", 3), Pair("trajectory_data", 1),
+          Pair("submap", 2), Pair("node", 4), Pair("trajectory_data", 1),
           Pair("imu_data", 2), Pair("odometry_data", 7),
           Pair("landmark_data", 1), Pair("unknown", 1)));
 }
@@ -111,10 +111,8 @@ TEST_F(MapFileTest, ReadsNodesInTheGravityAlignedFrame) {
     EXPECT_EQ(node.time, SmallMap::NodeTime(i));
     EXPECT_NEAR(node.gravity_alignment.angularDistance(SmallMap::Gravity(i)),
                 0., 1e-7);
-    ASSERT_EQ(node.T_local_node.has_value(), i != SmallMap::kNodeWithoutRecord);
-    if (node.T_local_node.has_value()) {
-      ExpectNear(*node.T_local_node, SmallMap::LocalNodePose(i));
-    }
+    ASSERT_TRUE(node.T_local_node.has_value());
+    ExpectNear(*node.T_local_node, SmallMap::LocalNodePose(i));
   }
 }
 
@@ -212,7 +210,7 @@ TEST_F(MapFileTest, ReadsPointClouds) {
   const NodeId first{kTrajectory, 0};
   const NodeId third{kTrajectory, 2};
   const absl::StatusOr<std::map<NodeId, PointCloud2>> clouds = ReadPointClouds(
-      input_, {first, third, NodeId{kTrajectory, 3}, NodeId{0, 0}});
+      input_, {first, third, NodeId{kTrajectory, 9}, NodeId{0, 0}});
   ASSERT_TRUE(clouds.ok()) << clouds.status();
   ASSERT_THAT(*clouds, ElementsAre(Key(first), Key(third)));
   ASSERT_EQ(clouds->at(third).size(), 1u);
@@ -234,9 +232,91 @@ TEST_F(MapFileTest, VisitsPointCloudsWhileItReads) {
   EXPECT_EQ(counter.Count(), 1);
   EXPECT_EQ(num_grids, 2);
   const NodeId first{kTrajectory, 0}, second{kTrajectory, 1},
-      third{kTrajectory, 2};
-  EXPECT_THAT(clouds, ElementsAre(Key(first), Key(second), Key(third)));
-  EXPECT_EQ(clouds, *ReadPointClouds(input_, {first, second, third}));
+      third{kTrajectory, 2}, fourth{kTrajectory, 3};
+  EXPECT_THAT(clouds,
+              ElementsAre(Key(first), Key(second), Key(third), Key(fourth)));
+  EXPECT_EQ(clouds, *ReadPointClouds(input_, {first, second, third, fourth}));
+}
+
+// A file that was cut at the border of a record.
+class CutMapTest : public MapFileTest {
+ protected:
+  CutMapTest() { map_.nodes.resize(2); }
+  void SetUp() override { Write(map_); }
+
+  SmallMap map_;
+};
+
+TEST_F(CutMapTest, IsRefusedWithTheNumbers) {
+  EXPECT_THAT(std::string(ReadMap(input_).status().message()),
+              HasSubstr(input_ + " is not whole: 0 of 2 submaps and 2 of 4 "
+                                 "nodes in its pose graph have no record"));
+  map_.nodes.clear();
+  map_.submaps.resize(1);
+  Write(map_);
+  EXPECT_THAT(std::string(ReadMap(input_).status().message()),
+              HasSubstr("1 of 2 submaps and 4 of 4 nodes"));
+}
+
+TEST_F(CutMapTest, CanBeLookedAt) {
+  const absl::StatusOr<MapState> kept =
+      ReadMap({input_, MissingRecords::kKeep});
+  ASSERT_TRUE(kept.ok()) << kept.status();
+  EXPECT_EQ(kept->num_unrecorded_submaps, 0);
+  EXPECT_EQ(kept->num_unrecorded_nodes, 2);
+  EXPECT_EQ(kept->pose_graph.nodes.size(), 4u);
+  EXPECT_FALSE(kept->pose_graph.nodes.at(NodeId{kTrajectory, 3}).T_local_node);
+  EXPECT_EQ(kept->pose_graph.constraints.size(), 5u);
+}
+
+TEST_F(CutMapTest, CanBeRepaired) {
+  const absl::StatusOr<MapState> repaired =
+      ReadMap({input_, MissingRecords::kDrop});
+  ASSERT_TRUE(repaired.ok()) << repaired.status();
+  EXPECT_EQ(repaired->num_unrecorded_nodes, 2);
+  EXPECT_THAT(
+      repaired->pose_graph.nodes,
+      ElementsAre(Key(NodeId{kTrajectory, 0}), Key(NodeId{kTrajectory, 1})));
+  // Those of the nodes 2 and 3 are gone.
+  EXPECT_EQ(repaired->pose_graph.constraints.size(), 3u);
+  // The output is whole, from whatever graph, and is the same.
+  EXPECT_THAT(WriteError(repaired->pose_graph), HasSubstr("is not whole"));
+  const MapSource source(input_, MissingRecords::kDrop);
+  ASSERT_TRUE(WriteMap(source, output_, repaired->pose_graph).ok());
+  const std::string expected = ReadFile(output_);
+  const MapState read = Read(output_);
+  EXPECT_EQ(read.num_unrecorded_nodes, 0);
+  EXPECT_EQ(read.pose_graph.nodes.size(), 2u);
+  EXPECT_EQ(read.pose_graph.constraints.size(), 3u);
+  ASSERT_TRUE(WriteMap(source, output_,
+                       ReadMap({input_, MissingRecords::kKeep})->pose_graph)
+                  .ok());
+  EXPECT_EQ(ReadFile(output_), expected);
+}
+
+TEST_F(MapFileTest, TellsItsTrajectories) {
+  EXPECT_THAT(*ReadTrajectories(input_), ElementsAre(kTrajectory));
+  EXPECT_TRUE(CheckHasTrajectories(input_, {}).ok());
+  EXPECT_TRUE(CheckHasTrajectories("/nowhere", {}).ok());
+  EXPECT_TRUE(CheckHasTrajectories(input_, {kTrajectory}).ok());
+  EXPECT_EQ(
+      std::string(CheckHasTrajectories(input_, {kTrajectory, 7}).message()),
+      input_ + " has no trajectory 7; it has 5");
+  EXPECT_FALSE(CheckHasTrajectories("/nowhere", {0}).ok());
+}
+
+// What local data are damaged is copied as it is; nothing of it may appear.
+TEST_F(MapFileTest, WritesNothingThatTheHostWouldNotLoad) {
+  SmallMap map;
+  map.nodes[1]
+      .mutable_node_data()
+      ->mutable_filtered_gravity_aligned_point_cloud()
+      ->set_num_points(2);
+  Write(map);
+  const PoseGraph graph = Read(input_).pose_graph;
+  EXPECT_THAT(WriteError(graph),
+              HasSubstr("cannot write " + output_ +
+                        ": Cartographer would not load it: "));
 }
 
 TEST_F(MapFileTest, ProgressGrowsToOne) {

@@ -54,7 +54,8 @@ TEST_F(DescribedMapTest, KeepsPointCloudsWhereTheyAreWanted) {
     const absl::StatusOr<std::map<NodeId, PointCloud2>> expected =
         ReadPointClouds(path_, {{SmallMap::kTrajectory, 0},
                                 {SmallMap::kTrajectory, 1},
-                                {SmallMap::kTrajectory, 2}});
+                                {SmallMap::kTrajectory, 2},
+                                {SmallMap::kTrajectory, 3}});
     ASSERT_TRUE(expected.ok()) << expected.status();
     EXPECT_EQ(map->point_clouds, *expected);
   }
@@ -63,7 +64,7 @@ TEST_F(DescribedMapTest, KeepsPointCloudsWhereTheyAreWanted) {
 TEST_F(DescribedMapTest, PointCloudsComeWithRememberedPlaces) {
   const RememberedMap described = Remember(PointClouds::kKeep);
   EXPECT_FALSE(described.is_from_file);
-  EXPECT_EQ(described.map.point_clouds.size(), 3u);
+  EXPECT_EQ(described.map.point_clouds.size(), 4u);
   const RememberedMap remembered = Remember(PointClouds::kKeep);
   EXPECT_TRUE(remembered.is_from_file);
   EXPECT_EQ(remembered.map.point_clouds, described.map.point_clouds);

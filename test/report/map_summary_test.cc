@@ -30,6 +30,8 @@ MapState TestMap() {
   map.submaps[{0, 0}] = submap;
   map.pose_graph.submap_poses[{0, 0}] = Rigid2();
   map.pose_graph.submap_poses[{1, 0}] = Rigid2();
+  map.num_unrecorded_submaps = 1;
+  map.num_unrecorded_nodes = 2;
   // An L of 3 m and 4 m, with a pause of 20 s; then another trajectory.
   const auto add_node = [&map](const NodeId& id, const double seconds,
                                const Rigid2& pose) {
@@ -73,6 +75,7 @@ TEST(MapSummaryTest, DescribesTheMap) {
   for (const std::string part :
        {"a.pbstream\n", "format version  2\n",
         "1 (1 finished), and 1 poses without a submap\n",
+        "4, 2 of them without data: the file was cut\n",
         "1 probability, cells of 0.1 m\n", "0.5 m2",
         "0 intra-submap, 1 inter-submap (1 between trajectories)\n", "7.0 m",
         "33 % of nodes", "1, up to 20.0 s", "2019-05-23 14:00:01 UTC"}) {

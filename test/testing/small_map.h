@@ -93,8 +93,7 @@ inline std::string WithUnknownField(const std::string& message) {
   return message + std::string("\xc2\x3e\x03xyz", 6);
 }
 
-// One trajectory with two submaps and four nodes, the last of which has no
-// record of its own. Change it before Records().
+// One trajectory with two submaps and four nodes. Change it before Records().
 struct SmallMap {
   // As ReadMap() must find them.
   static Rigid2 NodePose(const int index) {
@@ -114,7 +113,6 @@ struct SmallMap {
   }
   // Yaw and tilt, as with an IMU.
   static Eigen::Quaterniond Gravity(const int index) {
-    if (index == kNodeWithoutRecord) return Eigen::Quaterniond::Identity();
     return Eigen::AngleAxisd(0.02 * index, Eigen::Vector3d::UnitX()) *
            Eigen::AngleAxisd(0.8 + index, Eigen::Vector3d::UnitZ());
   }
@@ -129,7 +127,6 @@ struct SmallMap {
   }
   static constexpr int kNumSubmaps = 2;
   static constexpr int kNumNodes = 4;
-  static constexpr int kNodeWithoutRecord = 3;
   static constexpr int kTrajectory = 5;
 
   proto::SerializationHeader header;
@@ -183,18 +180,20 @@ struct SmallMap {
       *data.mutable_node() = node;
       add(data);
     }
-    data.mutable_trajectory_data();
+    data.mutable_trajectory_data()->set_trajectory_id(kTrajectory);
     add(data);
-    for (const char* const payload : {"first", "second"}) {
-      CHECK(data.mutable_imu_data()->ParseFromString(WithUnknownField(
-          std::string("\x12\x05", 2) + std::string(payload).substr(0, 5))));
+    for (const int64_t time : {NodeTime(0), NodeTime(1)}) {
+      proto::SensorData& imu = *data.mutable_imu_data();
+      imu.set_trajectory_id(kTrajectory);
+      CHECK(imu.mutable_data()->ParseFromString(WithUnknownField("")));
+      imu.mutable_data()->set_timestamp(time);
       add(data);
     }
     for (const proto::OdometryData& measurement : odometry) {
       *data.mutable_odometry_data() = measurement;
       add(data);
     }
-    data.mutable_landmark_data();
+    data.mutable_landmark_data()->set_trajectory_id(kTrajectory);
     add(data);
     records.push_back(WithUnknownField(""));
     return records;
@@ -231,7 +230,6 @@ struct SmallMap {
     pose.set_node_index(index);
     pose.set_timestamp(NodeTime(index));
     *pose.mutable_pose() = ToProto(Embed3D(NodePose(index)) * gravity);
-    if (index == kNodeWithoutRecord) return;
     proto::Node& node = nodes.emplace_back();
     node.mutable_node_id()->set_trajectory_id(kTrajectory);
     node.mutable_node_id()->set_index(index);

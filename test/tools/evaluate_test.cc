@@ -31,8 +31,7 @@ class EvaluateTest : public ::testing::Test {
     for (int i = 0; i != SmallMap::kNumNodes; ++i) {
       const NodeId id{SmallMap::kTrajectory, i};
       // The pose graph's yaw plus that of the gravity alignment.
-      const double gravity_yaw =
-          i == SmallMap::kNodeWithoutRecord ? 0. : 0.8 + i;
+      const double gravity_yaw = 0.8 + i;
       truth.T_world_tracking[id] =
           T_world_map * SmallMap::NodePose(i) * Rigid2(0., 0., gravity_yaw);
     }

@@ -60,11 +60,11 @@ TEST(ProgramTest, HelpsWithEachSubcommand) {
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.output, AllOf(HasSubstr(subcommand.summary),
                                    Not(HasSubstr("minloglevel"))));
-    for (const std::string& flag : subcommand.required_flags) {
-      EXPECT_THAT(help.output, HasSubstr("--" + flag + " <"));
+    for (const SubcommandFlag& flag : subcommand.required_flags) {
+      EXPECT_THAT(help.output, HasSubstr("--" + flag.name + " <"));
     }
-    for (const std::string& flag : subcommand.optional_flags) {
-      EXPECT_THAT(help.output, HasSubstr("--" + flag + " <"));
+    for (const SubcommandFlag& flag : subcommand.optional_flags) {
+      EXPECT_THAT(help.output, HasSubstr("--" + flag.name + " <"));
     }
     std::istringstream lines(help.output);
     for (std::string line; std::getline(lines, line);) {

@@ -202,7 +202,7 @@ TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
                1, "no two of the maps are connected");
   expect_error(
       {"merge", "--inputs", map + "," + offices_->Evening(), "--output", map},
-      1, "it is one of the maps that are read");
+      1, "it is one of the files that are read");
   expect_error({"merge", "--inputs", map + "," + offices_->Evening(),
                 "--output", File("x"), "--frozen_trajectories", "1"},
                1, "cannot be frozen");
