@@ -146,7 +146,7 @@ absl::Status MapReader::CheckIsWhole() const {
       records_.path(), " is not whole: ", num_missing_submaps, " of ",
       num_submaps, " submaps and ", num_missing_nodes, " of ", num_nodes,
       " nodes in its pose graph have no record of their own, as if the file "
-      "had been cut; --repair leaves them out"));
+      "had been cut; close_loops and others leave them out with --repair"));
 }
 
 absl::Status MapReader::Expect(const Kind kind, const char* const name) const {

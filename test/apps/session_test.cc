@@ -90,6 +90,17 @@ TEST_F(LocalizeInTest, FindsAWholeSession) {
   }
 }
 
+TEST_F(LocalizeInTest, SaysWhatIsTheMatterWithAMap) {
+  DescribedMap bare;
+  const Localization result = Find(bare, *evening_);
+  EXPECT_EQ(result.verdict, LocalizationVerdict::kNothingAlike);
+  EXPECT_THAT(result.reason, HasSubstr("the map has no submaps: drive"));
+  // One submap, of which little is seen.
+  bare.state.submaps.insert(*elsewhere_->state.submaps.begin());
+  EXPECT_THAT(Find(bare, *evening_).reason,
+              HasSubstr("the map shows too little: 0 m2, 20 are needed"));
+}
+
 TEST_F(LocalizeInTest, MapsThatDoNotDriftAreLaidWithinCentimetres) {
   const FloorPlan plan = testing::MakeSmallOffice(1);
   const DriftOptions none{0., 0., 0., 0., 0., 0.};

@@ -125,6 +125,46 @@ TEST(EvaluateTrajectoryTest, SkipsAndCountsWhatTheTruthDoesNotKnow) {
   EXPECT_NEAR(error->errors.translation.max, 0., 1e-12);
 }
 
+// Nodes half a metre apart, on a circle of the given radius.
+Truth Circle(const double radius) {
+  Truth truth;
+  for (int k = 0; k < 200; ++k) {
+    const double angle = 0.5 * k / radius;
+    truth.T_world_tracking[{0, k}] = Rigid2(
+        radius * std::sin(angle), radius - radius * std::cos(angle), angle);
+  }
+  return truth;
+}
+
+TEST(CheckIsTruthOfTest, KnowsADriveByItsShape) {
+  PoseGraph graph = MapOf(Circle(8.), Rigid2(3., 4., 1.));
+  // A map that is wrong by far, of a local SLAM that drifts, is of this drive.
+  for (auto& [id, node] : graph.nodes) {
+    node.T_local_node =
+        node.T_map_node * Rigid2(0.01 * id.index, 0., 1e-3 * id.index);
+    node.T_map_node = Rigid2(5. * id.index, 0., 0.);
+  }
+  EXPECT_TRUE(CheckIsTruthOf("map", graph, "truth", Circle(8.)).ok());
+  const absl::Status status =
+      CheckIsTruthOf("a.pbstream", graph, "b.csv", Circle(5.));
+  EXPECT_THAT(std::string(status.message()),
+              ::testing::AllOf(
+                  ::testing::StartsWith("b.csv is the truth of another map"),
+                  ::testing::HasSubstr("elsewhere in a.pbstream")));
+  // Of 99.5 m, one begins each metre, as long as 10 m are left.
+  EXPECT_EQ(CompareDrives(graph, Circle(8.)).num_stretches, 90);
+}
+
+TEST(CheckIsTruthOfTest, TakesWhatItCannotTell) {
+  // Too short, or without nodes.
+  EXPECT_TRUE(
+      CheckIsTruthOf("map", MapOf(Square(), Rigid2()), "truth", Circle(8.))
+          .ok());
+  EXPECT_TRUE(
+      CheckIsTruthOf("map", MapOf(Circle(8.), Rigid2()), "truth", Truth())
+          .ok());
+}
+
 TEST(EvaluateTrajectoryTest, NoneWhereTheMotionIsUndetermined) {
   EXPECT_FALSE(EvaluateTrajectory(PoseGraph{}, Square()).has_value());
   EXPECT_FALSE(
