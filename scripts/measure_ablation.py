@@ -162,8 +162,10 @@ def write_configuration(work, variant):
 def check_configuration(program, work, variant):
     """Fails where the overrides do not fit the options; sooner than a run of
     many minutes would."""
+    no_map = work / "no_map"
+    no_map.touch()
     result = subprocess.run(
-        [program, "match", "--input", os.devnull, "--output", os.devnull,
+        [program, "match", "--input", no_map, "--output", "-",
          "--configuration_directory", work, "--configuration_basename",
          configuration_name(variant)], capture_output=True, text=True, check=False)
     if "configuration file" in result.stderr:

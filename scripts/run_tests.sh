@@ -13,7 +13,7 @@ usage: scripts/run_tests.sh [--sanitize | --benchmark]
   --sanitize   builds the libraries with the address and undefined behaviour
                sanitizers and with assertions, in a directory of its own, and
                runs the tests of what reads bytes from outside or computes on
-               them, without the real maps
+               them, without the real maps, and the fuzzers for some seconds
   --benchmark  builds and runs the benchmarks after the tests
 environment:
   BUILD_DIR    the build directory; build/ of the checkout by default,
@@ -47,6 +47,7 @@ if "${sanitize}"; then
     -DCMAKE_BUILD_TYPE=RelWithDebInfo
     "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1"
     "-DCARTOGRAPHER_SDF_SANITIZE=address,undefined"
+    -DCARTOGRAPHER_SDF_BUILD_FUZZERS=ON
     -DCARTOGRAPHER_SDF_TEST_DATA_DIRECTORY=none
   )
   # A minute of all that other tests do in a second.

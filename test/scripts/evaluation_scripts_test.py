@@ -129,12 +129,15 @@ class GridSearchTest(unittest.TestCase):
             options = next(grid_search.points_of(method))
             (self.directory / "point.lua").write_text(
                 grid_search.configuration(method, options), encoding="utf-8")
+            self.directory.joinpath("no_map").touch()
             result = subprocess.run(
-                [PROGRAM, "match", "--input", os.devnull, "--output", os.devnull,
-                 "--method", method, "--configuration_directory",
+                [PROGRAM, "match", "--input", self.directory / "no_map",
+                 "--output", "-", "--method", method, "--configuration_directory",
                  self.directory, "--configuration_basename", "point.lua"],
                 capture_output=True, text=True, check=False)
             self.assertNotIn("configuration file", result.stderr)
+            # It came as far as the map.
+            self.assertIn("is not a .pbstream file", result.stderr)
             self.assertEqual(result.returncode, 1)
 
 
