@@ -199,15 +199,21 @@ bool PendingFile::TryToOpen(const int number) {
       (std::filesystem::path(DirectoryOf(target_path_)) /
        absl::StrCat(TemporaryPrefix(target_path_), getpid(), "-", number))
           .string();
+  // Before it exists: a signal may come at any moment.
+  slot_ = TakeSlot(temporary_path_);
   file_descriptor_ = open(temporary_path_.c_str(),
                           O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (file_descriptor_ < 0) return false;
+  if (file_descriptor_ < 0) {
+    FreeSlot(std::exchange(slot_, -1));
+    return false;
+  }
   // Another process that found it before the lock was taken removes it. Where
   // there are no locks, nobody removes anything.
   if (flock(file_descriptor_, LOCK_EX) != 0 || HasName(file_descriptor_)) {
     return true;
   }
   close(std::exchange(file_descriptor_, -1));
+  FreeSlot(std::exchange(slot_, -1));
   errno = EEXIST;
   return false;
 }
@@ -226,7 +232,6 @@ absl::Status PendingFile::Open() {
     if (TryToOpen(i) || errno != EEXIST) break;
   }
   if (file_descriptor_ < 0) return Failure(errno);
-  slot_ = TakeSlot(temporary_path_);
   if (!exists) return absl::OkStatus();
   if (existing.st_uid != geteuid() || existing.st_gid != getegid()) {
     // Only root may.

@@ -129,7 +129,7 @@ absl::Status CheckInput(const UsedFile& file) {
   const std::string problem = absl::StrCat("cannot open ", file.path);
   if (status.type() == fs::file_type::not_found) {
     return absl::NotFoundError(
-        absl::StrCat(problem, ": No such file or directory"));
+        absl::StrCat(problem, ": there is no such file"));
   }
   if (error) return absl::ErrnoToStatus(error.value(), problem);
   if (status.type() != fs::file_type::regular) {

@@ -148,16 +148,30 @@ void RemoveTemporaryMaps() {
   }
 }
 
-absl::StatusOr<Recording> RecordingOfFlags() {
+CarmenLogOptions LogOptionsOfFlags() {
   CarmenLogOptions options;
   if (FLAGS_field_of_view != 0.) {
     options.field_of_view = FLAGS_field_of_view * M_PI / 180.;
   }
   options.seconds_per_scan = FLAGS_seconds_per_scan;
-  if (const std::string problem = Validate(options); !problem.empty()) {
-    return UsageError(absl::StrCat("--", problem));
+  return options;
+}
+
+absl::Status CheckFlagsOfRunLog() {
+  if (!(FLAGS_start >= 0.) || !(FLAGS_duration >= 0.)) {
+    return UsageError("--start and --duration must not be negative");
   }
-  absl::StatusOr<Recording> recording = ReadCarmenLog(FLAGS_log, options);
+  if (!(FLAGS_real_time_factor >= 0.)) {
+    return UsageError("--real_time_factor must not be negative");
+  }
+  const std::string problem = Validate(LogOptionsOfFlags());
+  return problem.empty() ? absl::OkStatus()
+                         : UsageError(absl::StrCat("--", problem));
+}
+
+absl::StatusOr<Recording> RecordingOfFlags() {
+  absl::StatusOr<Recording> recording =
+      ReadCarmenLog(FLAGS_log, LogOptionsOfFlags());
   if (!recording.ok()) return recording.status();
   const double duration = FLAGS_duration > 0.
                               ? FLAGS_duration
@@ -185,12 +199,6 @@ absl::Status RunAndReport(const Recording& recording,
 }
 
 absl::Status RunLogOfFlags() {
-  if (!(FLAGS_start >= 0.) || !(FLAGS_duration >= 0.)) {
-    return UsageError("--start and --duration must not be negative");
-  }
-  if (!(FLAGS_real_time_factor >= 0.)) {
-    return UsageError("--real_time_factor must not be negative");
-  }
   absl::StatusOr<LogRunOptions> options = OptionsOfFlags();
   if (!options.ok()) return options.status();
   const absl::StatusOr<Recording> recording = RecordingOfFlags();
@@ -232,7 +240,8 @@ Subcommand RunLogCommand() {
        "seconds_per_scan",
        "verbose"},
       &RunLogOfFlags,
-      kProgram};
+      kProgram,
+      &CheckFlagsOfRunLog};
 }
 
 }  // namespace

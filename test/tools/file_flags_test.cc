@@ -267,7 +267,7 @@ TEST_F(FileFlagsTest, EveryInputMustBeThere) {
           return Check(subcommand, {absl::StrCat("--", flag.name, "=", path)});
         };
         EXPECT_THAT(check(directory_.File("absent")),
-                    HasSubstr("absent: No such file"));
+                    HasSubstr("absent: there is no such file"));
         EXPECT_THAT(check(directory_.path()), HasSubstr("not a regular file"));
         EXPECT_THAT(check(pipe), HasSubstr("not a regular file"));
       });
