@@ -131,29 +131,31 @@ void KeepBadPoses(RecognitionOptions* const options) {
 // by the way than by local SLAM, turned, and with leads from none to 5.
 std::string RefusedRivals(const RivalMatchOptions& options) {
   const std::map<SubmapId, Place> places;
-  const std::map<SubmapId, OdometryPose> odometry = {
+  std::map<SubmapId, OdometryPose> odometry = {
       {{0, 0}, {Rigid2(), 0.}}, {{0, 1}, {Rigid2(1., 0., 0.), 40.}}};
   const TrajectoryPlaces map{&places, &odometry};
   std::vector<Match> matches;
-  const auto add = [&matches](const int query, const Rigid2& pose,
-                              const double lead) {
+  // Each query has a trajectory of its own.
+  const auto add = [&](const int trajectory, const Rigid2& pose,
+                       const double lead) {
+    odometry[{trajectory, 0}] = {};
     for (const int reference : {0, 1}) {
       Match match;
       match.pair = {{0, reference},
-                    {1, query},
+                    {trajectory, 0},
                     reference == 0 ? pose : Rigid2(-1., 0., 0.),
                     reference == 0 ? 8. : 8. - lead};
       match.verdict = Verdict::kAccepted;
       matches.push_back(match);
     }
   };
-  int query = 0;
+  int trajectory = 0;
   for (const double lead : {0., 1., 2., 5.}) {
     for (const double distance : {0.8, 1.7, 2.5, 3.6, 5., 20.}) {
-      add(query++, Rigid2(distance, 0., 0.), lead);
+      add(++trajectory, Rigid2(distance, 0., 0.), lead);
     }
     for (const double rotation : {0.2, 0.4, 0.7, 3.}) {
-      add(query++, Rigid2(0., 0., rotation), lead);
+      add(++trajectory, Rigid2(0., 0., rotation), lead);
     }
   }
   RefuseRivalMatches(options, JudgementOptions(), {map, map, std::nullopt},
