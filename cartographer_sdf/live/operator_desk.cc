@@ -16,21 +16,6 @@ namespace {
 namespace mapping = cartographer::mapping;
 using TrajectoryState = mapping::PoseGraphInterface::TrajectoryState;
 
-// Trajectories that still grow, oldest first. The pose graph knows a trajectory
-// from its first node on; a loaded one has no builder.
-std::vector<int> ActiveTrajectories(LiveMapBuilder* const live) {
-  std::vector<int> active;
-  const auto states = live->pose_graph()->GetTrajectoryStates();
-  for (int id = 0; id < live->num_trajectory_builders(); ++id) {
-    const auto state = states.find(id);
-    if (live->GetTrajectoryBuilder(id) != nullptr &&
-        (state == states.end() || state->second == TrajectoryState::ACTIVE)) {
-      active.push_back(id);
-    }
-  }
-  return active;
-}
-
 }  // namespace
 
 void OperatorDesk::SetMapBuilder(
@@ -43,6 +28,19 @@ void OperatorDesk::OnLocalization(const LocalizationResult& result) {
   results_.push_back(result);
 }
 
+std::vector<int> OperatorDesk::ActiveTrajectories() const {
+  std::vector<int> active;
+  const auto states = live_->pose_graph()->GetTrajectoryStates();
+  for (int id = 0; id < live_->num_trajectory_builders(); ++id) {
+    const auto state = states.find(id);
+    if (ended_.count(id) == 0 && live_->GetTrajectoryBuilder(id) != nullptr &&
+        (state == states.end() || state->second == TrajectoryState::ACTIVE)) {
+      active.push_back(id);
+    }
+  }
+  return active;
+}
+
 std::vector<LocalizationResult> OperatorDesk::TakeResults() {
   const absl::MutexLock lock(&mutex_);
   return std::exchange(results_, {});
@@ -50,7 +48,7 @@ std::vector<LocalizationResult> OperatorDesk::TakeResults() {
 
 std::optional<int> OperatorDesk::NewestTrajectory() const {
   if (live_ == nullptr) return std::nullopt;
-  const std::vector<int> active = ActiveTrajectories(live_);
+  const std::vector<int> active = ActiveTrajectories();
   if (active.empty()) return std::nullopt;
   return active.back();
 }
@@ -75,7 +73,7 @@ std::optional<StartPose> OperatorDesk::GetStartPose(
 std::optional<int> OperatorDesk::SearchAgain(
     const int trajectory_id, const std::optional<TrajectoryActions>& restart) {
   if (live_ == nullptr) return std::nullopt;
-  const std::vector<int> active = ActiveTrajectories(live_);
+  const std::vector<int> active = ActiveTrajectories();
   if (std::count(active.begin(), active.end(), trajectory_id) == 0) {
     return std::nullopt;
   }
@@ -84,6 +82,7 @@ std::optional<int> OperatorDesk::SearchAgain(
     return trajectory_id;
   }
   if (!restart->finish(trajectory_id)) return std::nullopt;
+  ended_.insert(trajectory_id);
   restart->start();
   const std::optional<int> next = NewestTrajectory();
   if (!next) return std::nullopt;
@@ -99,7 +98,7 @@ int OperatorDesk::SearchForAll(
     const std::optional<TrajectoryActions>& restart) {
   if (live_ == nullptr) return 0;
   int count = 0;
-  for (const int id : ActiveTrajectories(live_)) {
+  for (const int id : ActiveTrajectories()) {
     if (SearchAgain(id, restart)) ++count;
   }
   return count;

@@ -68,7 +68,14 @@ class OperatorDesk {
   [[nodiscard]] NodeStatus DescribeStatus();
 
  private:
+  // Trajectories that still grow, oldest first. The pose graph knows a
+  // trajectory from its first node on; a loaded one has no builder.
+  [[nodiscard]] std::vector<int> ActiveTrajectories() const;
+
   LiveMapBuilder* live_ = nullptr;
+  // Trajectories that were ended here. The pose graph says so only once it has
+  // worked through what came before, and to end one twice ends the process.
+  std::set<int> ended_;
   // Trajectories that began after the robot was carried away.
   std::set<int> carried_away_;
   std::chrono::steady_clock::time_point last_status_ =
