@@ -225,6 +225,16 @@ class Localizer {
     return rival;
   }
 
+  // Scores are sums that grow with what was seen of one place, right or wrong:
+  // a rival that would be certain by itself, with half the evidence of the
+  // best, is as good a reason to doubt as one just behind it.
+  [[nodiscard]] bool IsCertainRival(const Placement& best,
+                                    const Placement& rival) const {
+    constexpr double kShare = 0.5;
+    return rival.score >= task_.placement.min_score &&
+           rival.score >= kShare * best.score;
+  }
+
   void Decide() {
     const PlacementOptions& options = task_.placement;
     result_.T_map_query.reset();
@@ -249,8 +259,8 @@ class Localizer {
                              "of %.0f %% of the places do not match",
                              where, 100. * fraction));
     } else if (rival != nullptr &&
-               (rival->score >= options.min_score ||
-                best.score - rival->score < options.min_lead)) {
+               (best.score - rival->score < options.min_lead ||
+                IsCertainRival(best, *rival))) {
       Refuse(LocalizationVerdict::kAmbiguous,
              absl::StrFormat(
                  "ambiguous between %s (score %.1f) and %s (%.1f)", where,

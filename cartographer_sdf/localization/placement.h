@@ -39,7 +39,7 @@ struct PlacementOptions {
   double further_match_weight = 0.;
   // Least total score of the places that support a placement; log-odds. Above
   // the scores that perceptual aliasing in other buildings reaches. A rival
-  // that reaches it would be certain by itself, and makes any other ambiguous.
+  // that reaches it, and half of the best score, makes the best one ambiguous.
   double min_score = 6.5;
   // Least lead over the best placement that it excludes; log-odds.
   double min_lead = 4.;

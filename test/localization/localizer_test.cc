@@ -129,12 +129,15 @@ TEST_F(LocalizeTest, ARivalThatWouldBeCertainByItselfMakesItAmbiguous) {
   options_.placement.max_place_score = 20.;
   const Match elsewhere =
       InWestRoom(6.4, Verdict::kAccepted, Rigid2(3., 1., 2.));
-  EXPECT_EQ(Find({InWestRoom(15., Verdict::kAccepted), elsewhere}).verdict,
+  EXPECT_EQ(Find({InWestRoom(12., Verdict::kAccepted), elsewhere}).verdict,
             LocalizationVerdict::kLocalized);
   // The lead is as large as before.
   const Match certain = InWestRoom(6.6, Verdict::kAccepted, Rigid2(3., 1., 2.));
-  EXPECT_EQ(Find({InWestRoom(15.2, Verdict::kAccepted), certain}).verdict,
+  EXPECT_EQ(Find({InWestRoom(12.2, Verdict::kAccepted), certain}).verdict,
             LocalizationVerdict::kAmbiguous);
+  // Less than half the evidence of the other, as where a map has drifted.
+  EXPECT_EQ(Find({InWestRoom(13.4, Verdict::kAccepted), certain}).verdict,
+            LocalizationVerdict::kLocalized);
 }
 
 // A rival that only likely matches speak for is a rival all the same.
