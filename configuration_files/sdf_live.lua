@@ -31,8 +31,8 @@ SDF_LIVE = {
   neighbourhood = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.neighbourhood,
   consistency = SDF_GLOBAL_CONSTRAINTS.loop_closing.closing.consistency,
   constraints = SDF_GLOBAL_CONSTRAINTS.loop_closing.closing.constraints,
-  -- Whether matches are verified together with the neighbours of both submaps.
-  -- The newest submap has neighbours on one side only.
+  -- Whether matches are verified together with the neighbours of both submaps,
+  -- by their walls alone. The newest submap has neighbours on one side only.
   verify_neighbourhoods = false,
   -- Localisation of a new trajectory in a loaded map.
   localization = {

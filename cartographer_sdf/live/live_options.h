@@ -69,7 +69,8 @@ struct LiveOptions {
   PlaceOptions place;
   MatchOptions match;
   RetrievalOptions retrieval;
-  // Whether matches are verified together with both submaps' neighbours.
+  // Whether matches are verified together with both submaps' neighbours: by
+  // their walls alone, as what pairs found by themselves is not kept.
   bool verify_neighbourhoods = false;
   NeighbourhoodOptions neighbourhood;
   ConsistencyOptions consistency;

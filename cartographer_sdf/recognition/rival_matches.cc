@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/recognition/rival_matches.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -11,6 +12,11 @@
 
 namespace cartographer_sdf {
 namespace {
+
+// Returns ln(1 + odds), whatever the size of the log-odds.
+double LogOfOnePlusOdds(const double log_odds) {
+  return std::max(log_odds, 0.) + std::log1p(std::exp(-std::abs(log_odds)));
+}
 
 // One of the submaps that a shared submap is matched with.
 struct View {
@@ -53,7 +59,8 @@ class RivalFinder {
     const OdometryPose& pose_b = others_.odometry->at(b.other);
     const Rigid2 T_a_b =
         pose_a.T_local_submap.Inverse() * pose_b.T_local_submap;
-    const Rigid2 error =
+    // From where b puts the shared submap to where a does.
+    const Rigid2 T_by_a_by_b =
         a.T_other_shared.Inverse() * (T_a_b * b.T_other_shared);
     const double way =
         std::abs(pose_b.distance_driven - pose_a.distance_driven);
@@ -61,8 +68,10 @@ class RivalFinder {
         options_.max_rotation_drift_per_sqrt_meter * std::sqrt(way);
     const double drift = options_.max_drift_per_meter * way +
                          rotation_drift * T_a_b.translation().norm();
-    return error.translation().norm() > options_.min_distance_meters + drift ||
-           std::abs(error.rotation()) > options_.min_rotation + rotation_drift;
+    return T_by_a_by_b.translation().norm() >
+               options_.min_distance_meters + drift ||
+           std::abs(T_by_a_by_b.rotation()) >
+               options_.min_rotation + rotation_drift;
   }
 
   const RivalMatchOptions& options_;
@@ -112,8 +121,7 @@ void RefuseRivalMatches(const RivalMatchOptions& options,
   for (size_t k = 0; k < matches->size(); ++k) {
     Match& match = (*matches)[k];
     const double lead = match.pair.score - best_rivals[k];
-    match.pair.score -=
-        options.rival_weight * std::log1p(std::exp(best_rivals[k]));
+    match.pair.score -= options.rival_weight * LogOfOnePlusOdds(best_rivals[k]);
     if (match.verdict == Verdict::kAccepted &&
         (lead < options.min_lead || match.pair.score < judgement.min_score)) {
       match.verdict = Verdict::kAmbiguous;

@@ -125,6 +125,17 @@ TEST(RefuseRivalMatchesTest, ARivalTakesFromTheScore) {
               1e-12);
 }
 
+// Weights are options, and scores as large as they make them.
+TEST(RefuseRivalMatchesTest, ScoresMayBeAsLargeAsTheyLike) {
+  const Corridor corridor;
+  std::vector<Match> matches = {Accepted(1, 0, Rigid2(), 2000.),
+                                Accepted(4, 0, Rigid2(), 1000.)};
+  RefuseRivalMatches(RivalMatchOptions(), JudgementOptions(),
+                     corridor.Between(), &matches);
+  EXPECT_EQ(matches[0].pair.score, 1500.);
+  EXPECT_EQ(matches[1].pair.score, 0.);
+}
+
 TEST(RefuseRivalMatchesTest, WithoutARivalNothingChanges) {
   const Corridor corridor;
   std::vector<Match> matches = {Accepted(1, 0, Rigid2(), 6.)};

@@ -19,35 +19,19 @@
 #include "cartographer_ros/time_conversion.h"
 #include "cartographer_ros_msgs/ReadMetrics.h"
 #include "cartographer_ros_msgs/StatusCode.h"
-#include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/map_builder.h"
 #include "cartographer_sdf/live/operator_desk.h"
 #include "cartographer_sdf_msgs/Locate.h"
 #include "cartographer_sdf_ros/messages.h"
+#include "cartographer_sdf_ros/node_flags.h"
 #include "diagnostic_msgs/DiagnosticArray.h"
 #include "geometry_msgs/PoseWithCovarianceStamped.h"
-#include "gflags/gflags.h"
 #include "glog/logging.h"
 #include "ros/ros.h"
 #include "std_srvs/Trigger.h"
 #include "tf2_ros/buffer.h"
 #include "tf2_ros/transform_listener.h"
 #include "visualization_msgs/MarkerArray.h"
-
-DEFINE_bool(collect_metrics, false,
-            "Collect metrics, to be had by the services /read_metrics "
-            "(Cartographer's) and /sdf_read_metrics (the searcher's).");
-DEFINE_string(configuration_directory, "",
-              "First directory to look for configuration files in.");
-DEFINE_string(configuration_basename, "", "Cartographer's configuration file.");
-DEFINE_string(sdf_configuration_basename, "sdf_live.lua",
-              "The searcher's configuration file.");
-DEFINE_string(load_state_filename, "", "A .pbstream to load; none if empty.");
-DEFINE_bool(load_frozen_state, true, "Whether what is loaded stays as it is.");
-DEFINE_bool(start_trajectory_with_default_topics, true,
-            "Start the first trajectory at once.");
-DEFINE_string(save_state_filename, "",
-              "Where the map goes before the node ends; nowhere if empty.");
 
 namespace cartographer_sdf {
 namespace {
@@ -63,14 +47,6 @@ constexpr double kResultPeriodSeconds = 0.1;
 constexpr double kStatusPeriodSeconds = 1.;
 constexpr double kMarkerPeriodSeconds = 2.;
 constexpr int kQueueSize = 10;
-
-LiveOptions LoadOptionsOrDie() {
-  const absl::StatusOr<LiveOptions> options = LoadLiveOptions(
-      {FLAGS_configuration_directory, CARTOGRAPHER_SDF_CONFIGURATION_DIRECTORY},
-      FLAGS_sdf_configuration_basename);
-  CHECK(options.ok()) << options.status().message();
-  return *options;
-}
 
 NodeParameters LoadNodeParameters() {
   const ros::NodeHandle handle("~");
