@@ -395,8 +395,9 @@ SDF_GLOBAL_CONSTRAINTS = {
   localization = {
     -- When a pose in the map is certain.
     placement = {
-      -- [m] Submaps closer together than this count partly as the same
-      -- evidence. Larger: more must be seen.
+      -- [m] Submaps closer together than this, or than the diameter of what
+      -- they show, count partly as the same evidence. Larger: more must be
+      -- seen.
       independent_distance_meters = 10.,
       -- Largest contribution of one match (log-odds).
       max_place_score = 10.,
@@ -424,7 +425,7 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Number of submaps of the query, evenly spaced, to search for in the map
     -- first; doubled while the answer is uncertain. Larger: slower where few
     -- suffice.
-    num_first_places = 2,
+    num_first_places = 64,
     -- Number of pairs of submaps that overlap under the answer and are verified
     -- there. Larger: more evidence for and against it, slower.
     max_num_confirmed_pairs = 50,

@@ -160,13 +160,15 @@ Localization LocalizeIn(const LocalizationOptions& options,
       MakeMapLayout(map.state.pose_graph, map.odometry, map.places);
   const MapLayout query_layout =
       MakeMapLayout(query.state.pose_graph, query.odometry, query.places);
+  IncrementalRecognition recognition(stages.recognition,
+                                     map.trajectory_places(),
+                                     query.trajectory_places(), executor);
   Localization result = Localize(
       options, stages.closing.consistency, stages.recognition.match,
       {&map.places, &map_layout}, {&query.places, &query_layout},
-      [&](const std::map<SubmapId, Place>& queries,
-          const ProgressCallback& on_progress) {
-        return MatchBetween(stages.recognition, map.places, queries, executor,
-                            on_progress);
+      [&recognition](const std::map<SubmapId, Place>& queries,
+                     const ProgressCallback& on_progress) {
+        return recognition.Add(queries, on_progress);
       },
       executor, on_stage);
   result.reason +=

@@ -106,8 +106,9 @@ class Localizer {
 
   // Searches round by round, until the answer is certain.
   void Search() {
-    std::vector<Match> voting;
     for (const std::map<SubmapId, Place>& places : Rounds()) {
+      std::vector<Match> voting;
+      num_ambiguous_ = 0;
       for (Match& match : match_places_(places, clock_.Begin("match"))) {
         // Likely, except for the rival.
         num_ambiguous_ +=
@@ -116,7 +117,7 @@ class Localizer {
         if (Votes(match)) voting.push_back(std::move(match));
       }
       std::stable_sort(voting.begin(), voting.end(), &ByIds);
-      result_.matches = voting;
+      result_.matches = std::move(voting);
       result_.contradictions.clear();
       clock_.Begin("vote");
       Vote();

@@ -35,7 +35,7 @@ struct LocalizationOptions {
   // Places of the query, evenly spaced, that are matched at first. While the
   // answer is uncertain, the number doubles, and those that are new are
   // matched. Larger: slower where few are enough.
-  int num_first_places = 2;
+  int num_first_places = 64;
   // Largest number of pairs of submaps that are verified to confirm the answer.
   // Larger: more agreeing and contradicting matches, slower.
   int max_num_confirmed_pairs = 50;
@@ -80,8 +80,8 @@ struct Localization {
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Returns the matches of query places with places of the map, whatever their
-// verdict: with all of them, or with those that an index proposes.
+// Returns the matches of these places of the query, and of all that were given
+// in earlier calls, with places of the map, whatever their verdict.
 using PlaceMatcher = std::function<std::vector<Match>(
     const std::map<SubmapId, Place>& queries, const ProgressCallback&)>;
 

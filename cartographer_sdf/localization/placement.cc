@@ -4,6 +4,7 @@
 #include "cartographer_sdf/localization/placement.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -143,12 +144,14 @@ double ScoreOf(const PlacementOptions& options, const MapPair& maps,
   for (const auto& [negative_score, id] : order) {
     const Eigen::Vector2d position =
         maps.query->T_map_submap.at(id) * maps.query->centroids.at(id);
-    double distance = options.independent_distance_meters;
+    const double independent = std::max(options.independent_distance_meters,
+                                        maps.query->diameters.at(id));
+    double distance = independent;
     for (const Eigen::Vector2d& other : counted) {
       distance = std::min(distance, (position - other).norm());
     }
     counted.push_back(position);
-    sum += -negative_score * distance / options.independent_distance_meters;
+    sum += -negative_score * distance / independent;
   }
   return sum;
 }
@@ -253,9 +256,11 @@ MapLayout MakeMapLayout(const PoseGraph& pose_graph,
                         const std::map<SubmapId, OdometryPose>& odometry,
                         const std::map<SubmapId, Place>& places) {
   MapLayout layout{
-      pose_graph.submap_poses, {}, DrivenDistances(pose_graph, odometry)};
+      pose_graph.submap_poses, {}, {}, DrivenDistances(pose_graph, odometry)};
   for (const auto& [id, place] : places) {
     layout.centroids.emplace(id, ObservedCentroid(place.surface));
+    layout.diameters.emplace(
+        id, 2. * std::sqrt(ObservedArea(place.surface) / M_PI));
   }
   return layout;
 }

@@ -27,8 +27,8 @@
 namespace cartographer_sdf {
 
 struct PlacementOptions {
-  // Places of the query nearer together than this are partly redundant, in
-  // proportion to their distance [m].
+  // Places of the query nearer together than this, or than the diameter of what
+  // they show, are partly redundant, in proportion to their distance [m].
   double independent_distance_meters = 10.;
   // Largest score that counts for one match, however certain it seems;
   // log-odds.
@@ -64,6 +64,8 @@ struct MapLayout {
   std::map<SubmapId, Rigid2> T_map_submap;
   // Centroids of the observed areas of the places, in their submap frames.
   std::map<SubmapId, Eigen::Vector2d> centroids;
+  // Diameters of discs of these areas [m].
+  std::map<SubmapId, double> diameters;
   DrivenDistances distances;
 };
 [[nodiscard]] MapLayout MakeMapLayout(

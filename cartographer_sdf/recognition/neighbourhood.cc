@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "cartographer_sdf/geometry/distinct_poses.h"
@@ -18,6 +20,10 @@ namespace {
 // Keeps the logarithm finite: less than one wall point in a hundred contradicts
 // by noise alone.
 constexpr double kNoiseRatio = 0.01;
+
+// Edge length of the tiles in which ground is counted [m]: some are filled by
+// the points of any overlap that is looked at.
+constexpr double kTileSize = 2.;
 
 struct NeighbourhoodTerm {
   const char* name;
@@ -75,13 +81,48 @@ double Probability(const double log_odds) {
   return 1. / (1. + std::exp(-log_odds));
 }
 
+// Pairs that see the same ground say the same: four submaps of one hall that
+// agree on where it is are one witness, not four. Ground is counted in tiles.
+class IndependentPairs {
+ public:
+  // `seen` is the ground of the match itself.
+  explicit IndependentPairs(std::set<TileIndex> seen)
+      : seen_(std::move(seen)) {}
+
+  void Add(const std::set<TileIndex>& tiles) {
+    ++num_pairs_;
+    num_tiles_ += tiles.size();
+    std::set_difference(tiles.begin(), tiles.end(), seen_.begin(), seen_.end(),
+                        std::inserter(news_, news_.end()));
+  }
+
+  // The number of pairs of the mean size that would have shown all new ground
+  // without showing any of it twice. Independent of the order of the pairs.
+  [[nodiscard]] double Count() const {
+    if (num_tiles_ == 0) return 0.;
+    return static_cast<double>(num_pairs_ * news_.size()) /
+           static_cast<double>(num_tiles_);
+  }
+
+ private:
+  const std::set<TileIndex> seen_;
+  std::set<TileIndex> news_;
+  size_t num_pairs_ = 0;
+  size_t num_tiles_ = 0;
+};
+
 // Measures one match's neighbouring pairs.
 class NeighbourhoodMeasurer {
  public:
   NeighbourhoodMeasurer(const NeighbourhoodOptions& options,
                         const VerificationOptions& verification,
-                        const NeighbourhoodMaps& maps)
-      : options_(options), verification_(verification), maps_(maps) {
+                        const NeighbourhoodMaps& maps, const PairPose& pair)
+      : options_(options),
+        verification_(verification),
+        maps_(maps),
+        reference_(pair.reference),
+        confirming_(
+            TilesOf(pair.reference, pair.query, pair.T_reference_query)) {
     agreement_ = verification.agreement;
     agreement_.max_num_points = options.num_points;
   }
@@ -100,7 +141,7 @@ class NeighbourhoodMeasurer {
     NeighbourhoodEvidence& evidence = neighbourhood_.evidence;
     std::optional<Rigid2> pose;
     if (is_confirmed) {
-      ++evidence.num_confirming;
+      confirming_.Add(TilesOf(reference, query, match->T_reference_query));
       pose = match->T_reference_query;
     } else {
       if (match) evidence.num_refuting += Probability(match->score);
@@ -115,13 +156,26 @@ class NeighbourhoodMeasurer {
     }
   }
 
-  [[nodiscard]] Neighbourhood Take() { return std::move(neighbourhood_); }
+  [[nodiscard]] Neighbourhood Take() {
+    neighbourhood_.evidence.num_confirming = confirming_.Count();
+    return std::move(neighbourhood_);
+  }
 
  private:
   [[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
                                     const SurfaceModel& query,
                                     const Rigid2& pose) const {
     return OverlapArea(reference, query, pose) >= options_.min_overlap_area;
+  }
+
+  // In the frame of the match's reference, by local SLAM.
+  [[nodiscard]] std::set<TileIndex> TilesOf(const SubmapId& reference,
+                                            const SubmapId& query,
+                                            const Rigid2& pose) const {
+    return OverlapTiles(maps_.references.places->at(reference).surface,
+                        maps_.queries.places->at(query).surface, pose,
+                        RelativePose(maps_.references, reference_, reference),
+                        kTileSize);
   }
 
   // Adds the wall of `points` in metres: each sampled point also stands for
@@ -142,6 +196,8 @@ class NeighbourhoodMeasurer {
   const NeighbourhoodOptions& options_;
   const VerificationOptions& verification_;
   const NeighbourhoodMaps& maps_;
+  const SubmapId reference_;  // of the match
+  IndependentPairs confirming_;
   AgreementOptions agreement_;
   Neighbourhood neighbourhood_;
 };
@@ -229,7 +285,7 @@ Neighbourhood MeasureNeighbourhood(const NeighbourhoodOptions& options,
                                    const NeighbourhoodMaps& maps,
                                    const PairPose& pair) {
   CHECK_EQ(Validate(options), "");
-  NeighbourhoodMeasurer measurer(options, verification, maps);
+  NeighbourhoodMeasurer measurer(options, verification, maps, pair);
   for (const SubmapId& i : Neighbours(options, maps.references,
                                       maps.reference_links, pair.reference)) {
     const Rigid2 T_i_query = RelativePose(maps.references, i, pair.reference) *

@@ -140,14 +140,40 @@ std::vector<Match> MatchPairs(const MatchOptions& options,
   return matches;
 }
 
+// Returns the matches between two maps without their neighbourhoods.
+std::vector<Match> MatchBetween(const RecognitionOptions& options,
+                                const std::map<SubmapId, Place>& references,
+                                const std::map<SubmapId, Place>& queries,
+                                const Executor& executor,
+                                const ProgressCallback& on_progress) {
+  return MatchPairs(options.match, references, queries,
+                    PairsBetween(options, references, queries, executor),
+                    executor, on_progress);
+}
+
+bool VerifiesNeighbourhoods(const RecognitionOptions& options) {
+  return options.verify_neighbourhoods && options.match.method == Method::kSdf;
+}
+
+// `maps` has links.
+std::vector<Match> VerifyTogether(const RecognitionOptions& options,
+                                  const NeighbourhoodMaps& maps,
+                                  std::vector<Match> matches,
+                                  const Executor& executor,
+                                  const ProgressCallback& on_progress) {
+  matches = VerifyNeighbourhoods(options.neighbourhood, options.match, maps,
+                                 std::move(matches), executor, on_progress);
+  RefuseRivalMatches(options.rivals, options.match.verification.judgement, maps,
+                     &matches);
+  return matches;
+}
+
 std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
                                  NeighbourhoodMaps maps,
                                  std::vector<Match> matches,
                                  const Executor& executor,
                                  StageClock* const clock) {
-  if (!options.verify_neighbourhoods || options.match.method != Method::kSdf) {
-    return matches;
-  }
+  if (!VerifiesNeighbourhoods(options)) return matches;
   const ProgressCallback on_progress = clock->Begin("verify neighbourhoods");
   const auto find_links = [&](const TrajectoryPlaces& map) {
     return TrajectoryLinks(options.links, options.match.verification, map,
@@ -159,11 +185,8 @@ std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
   if (!maps.min_index_gap) query_links.emplace(find_links(maps.queries));
   maps.reference_links = &reference_links;
   maps.query_links = query_links ? &*query_links : &reference_links;
-  matches = VerifyNeighbourhoods(options.neighbourhood, options.match, maps,
-                                 std::move(matches), executor, on_progress);
-  RefuseRivalMatches(options.rivals, options.match.verification.judgement, maps,
-                     &matches);
-  return matches;
+  return VerifyTogether(options, maps, std::move(matches), executor,
+                        on_progress);
 }
 
 }  // namespace
@@ -203,14 +226,35 @@ std::vector<Match> RecognizeBetween(const RecognitionOptions& options,
                        std::move(matches), executor, clock);
 }
 
-std::vector<Match> MatchBetween(const RecognitionOptions& options,
-                                const std::map<SubmapId, Place>& references,
-                                const std::map<SubmapId, Place>& queries,
-                                const Executor& executor,
-                                const ProgressCallback& on_progress) {
-  return MatchPairs(options.match, references, queries,
-                    PairsBetween(options, references, queries, executor),
-                    executor, on_progress);
+IncrementalRecognition::IncrementalRecognition(
+    const RecognitionOptions& options, const TrajectoryPlaces& references,
+    const TrajectoryPlaces& queries, const Executor& executor)
+    : options_(options),
+      maps_{references, queries, std::nullopt},
+      executor_(executor) {}
+
+std::vector<Match> IncrementalRecognition::Add(
+    const std::map<SubmapId, Place>& queries,
+    const ProgressCallback& on_progress) {
+  for (Match& match : MatchBetween(options_, *maps_.references.places, queries,
+                                   executor_, on_progress)) {
+    matches_.push_back(std::move(match));
+  }
+  std::stable_sort(matches_.begin(), matches_.end(),
+                   [](const Match& a, const Match& b) {
+                     return IsBeforeByIds(a.pair, b.pair);
+                   });
+  if (!VerifiesNeighbourhoods(options_) || matches_.empty()) return matches_;
+  if (!reference_links_) {
+    const VerificationOptions& verification = options_.match.verification;
+    reference_links_.emplace(options_.links, verification, maps_.references,
+                             executor_);
+    query_links_.emplace(options_.links, verification, maps_.queries,
+                         executor_);
+    maps_.reference_links = &*reference_links_;
+    maps_.query_links = &*query_links_;
+  }
+  return VerifyTogether(options_, maps_, matches_, executor_, {});
 }
 
 }  // namespace cartographer_sdf

@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_SDF_RECOGNITION_RECOGNIZE_H_
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,12 +56,27 @@ struct RecognitionOptions {
     const TrajectoryPlaces& queries, const Executor& executor,
     StageClock* clock);
 
-// Does the same without verifying neighbourhoods.
-[[nodiscard]] std::vector<Match> MatchBetween(
-    const RecognitionOptions& options,
-    const std::map<SubmapId, Place>& references,
-    const std::map<SubmapId, Place>& queries, const Executor& executor,
-    const ProgressCallback& on_progress = {});
+// Does the same for queries that come one after the other. The references, all
+// queries and the executor must outlive it. Thread-compatible.
+class IncrementalRecognition {
+ public:
+  IncrementalRecognition(const RecognitionOptions& options,
+                         const TrajectoryPlaces& references,
+                         const TrajectoryPlaces& queries,
+                         const Executor& executor);
+
+  // Matches `queries`, some of those given to the constructor that were not
+  // matched before. Returns the matches of all so far, verified together.
+  [[nodiscard]] std::vector<Match> Add(const std::map<SubmapId, Place>& queries,
+                                       const ProgressCallback& on_progress);
+
+ private:
+  const RecognitionOptions options_;
+  NeighbourhoodMaps maps_;
+  const Executor& executor_;
+  std::optional<TrajectoryLinks> reference_links_, query_links_;
+  std::vector<Match> matches_;  // of each pair by itself
+};
 
 }  // namespace cartographer_sdf
 

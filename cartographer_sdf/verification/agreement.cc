@@ -247,4 +247,25 @@ std::optional<Eigen::Vector2d> OverlapCentroid(
   return Eigen::Vector2d(sum / count);
 }
 
+std::set<TileIndex> OverlapTiles(const SurfaceModel& reference,
+                                 const SurfaceModel& query,
+                                 const Rigid2& T_reference_query,
+                                 const Rigid2& T_frame_reference,
+                                 const double tile_size) {
+  const CellLookup lookup(reference, T_reference_query);
+  const Rigid2 T_frame_query = T_frame_reference * T_reference_query;
+  const size_t num_points = std::min(query.observed_points.size(),
+                                     static_cast<size_t>(kMaxNumOverlapPoints));
+  std::set<TileIndex> tiles;
+  for (size_t k = 0; k < num_points; ++k) {
+    const SurfaceCell* const cell = lookup.Find(query.observed_points[k]);
+    if (cell == nullptr || !cell->observed) continue;
+    const Eigen::Vector2d tile =
+        (T_frame_query * query.observed_points[k]) / tile_size;
+    tiles.emplace(static_cast<int>(std::floor(tile.x())),
+                  static_cast<int>(std::floor(tile.y())));
+  }
+  return tiles;
+}
+
 }  // namespace cartographer_sdf

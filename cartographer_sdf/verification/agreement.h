@@ -8,7 +8,9 @@
 #define CARTOGRAPHER_SDF_VERIFICATION_AGREEMENT_H_
 
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
@@ -83,6 +85,16 @@ constexpr int kMaxNumOverlapPoints = 1000;
 [[nodiscard]] std::optional<Eigen::Vector2d> OverlapCentroid(
     const SurfaceModel& reference, const SurfaceModel& query,
     const Rigid2& T_reference_query);
+
+// The tiles of this edge length [m] that hold points observed by both, in a
+// frame in which the reference has this pose. From as many points as the
+// overlap.
+using TileIndex = std::pair<int, int>;
+[[nodiscard]] std::set<TileIndex> OverlapTiles(const SurfaceModel& reference,
+                                               const SurfaceModel& query,
+                                               const Rigid2& T_reference_query,
+                                               const Rigid2& T_frame_reference,
+                                               double tile_size);
 
 }  // namespace cartographer_sdf
 

@@ -47,6 +47,7 @@ class PlacementTest : public ::testing::Test {
     MapLayout layout = MakeMapLayout(map.pose_graph, OdometryPoses(map), {});
     for (const auto& [id, submap] : map.submaps) {
       layout.centroids[id] = Eigen::Vector2d::Zero();
+      layout.diameters[id] = 5.;
     }
     return layout;
   }
@@ -106,6 +107,24 @@ TEST_F(PlacementTest, FurtherMatchesOfOnePlaceCountAsAsked) {
     ASSERT_THAT(placements, SizeIs(1));
     EXPECT_NEAR(placements[0].score, 10. + weight * (2. + 4.), 1e-9);
   }
+}
+
+TEST_F(PlacementTest, PlacesThatShowTheSameHallAreOne) {
+  // 12 m apart in a hall four times as wide.
+  MapLayout map_layout = Layout(map_), query_layout = Layout(query_);
+  const auto score = [&] {
+    return cartographer_sdf::FindPlacements(
+               PlacementOptions(), ConsistencyOptions(),
+               {&map_layout, &query_layout},
+               {Closure(1, 1, 0., 6.), Closure(2, 2, 0., 5.)})
+        .at(0)
+        .score;
+  };
+  EXPECT_NEAR(score(), 11., 1e-9);
+  for (auto& [id, diameter] : query_layout.diameters) {
+    diameter = 4. * kSpacing;
+  }
+  EXPECT_NEAR(score(), 6. + 5. / 4., 1e-9);
 }
 
 TEST_F(PlacementTest, LookAlikesAreRivals) {

@@ -102,6 +102,42 @@ TEST(RecognizeTest, SkipsPairsThatShareScans) {
   }
 }
 
+// Matches one query after the other.
+std::vector<Match> OneByOne(const RecognitionOptions& options,
+                            const TrajectoryPlaces& references,
+                            const TrajectoryPlaces& queries) {
+  const Executor executor = MakeExecutor(1);
+  IncrementalRecognition recognition(options, references, queries, executor);
+  std::vector<Match> matches;
+  for (const auto& [id, place] : *queries.places) {
+    matches = recognition.Add({{id, place}}, {});
+  }
+  return matches;
+}
+
+TEST(RecognizeTest, QueriesOneByOneEndAsAllAtOnce) {
+  const testing::TwoVisits visits;
+  const testing::SlippedVisit again(visits);
+  UnheardClock clock;
+  RecognitionOptions options;
+  // An index of other queries may propose other poses.
+  options.use_retrieval = false;
+  for (const bool verify : {false, true}) {
+    options.verify_neighbourhoods = verify;
+    const std::vector<Match> at_once =
+        RecognizeBetween(options, visits.Places(), again.Places(),
+                         MakeExecutor(1), &clock.clock);
+    ASSERT_FALSE(at_once.empty());
+    const std::vector<Match> one_by_one =
+        OneByOne(options, visits.Places(), again.Places());
+    ASSERT_EQ(PairsOf(one_by_one), PairsOf(at_once));
+    for (size_t k = 0; k < at_once.size(); ++k) {
+      EXPECT_EQ(one_by_one[k].pair.score, at_once[k].pair.score);
+      EXPECT_EQ(one_by_one[k].verdict, at_once[k].verdict);
+    }
+  }
+}
+
 TEST(RecognizeTest, VerifiesNeighbourhoodsWhereAsked) {
   const testing::TwoVisits visits;
   RecognitionOptions options;

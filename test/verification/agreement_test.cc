@@ -4,6 +4,7 @@
 #include "cartographer_sdf/verification/agreement.h"
 
 #include <limits>
+#include <set>
 #include <vector>
 
 #include "gtest/gtest.h"
@@ -213,6 +214,18 @@ TEST(OverlapAreaTest, IsTheBruteForceOne) {
                 0.025 * expected);
   }
   EXPECT_EQ(OverlapArea(reference, query, Rigid2(100., 0., 0.)), 0.);
+}
+
+TEST(OverlapTilesTest, AreWhereBothHaveSeenInTheGivenFrame) {
+  // The row is seen from 0 to 1.2 m, the query's from 0.8 to 2 m.
+  const SurfaceModel row = WallAtTheBeginningOfARow();
+  const Rigid2 T_row_query(0.8, 0., 0.);
+  EXPECT_EQ(OverlapTiles(row, row, T_row_query, Rigid2(), 0.5),
+            (std::set<TileIndex>{{1, 0}, {2, 0}}));
+  EXPECT_EQ(OverlapTiles(row, row, T_row_query, Rigid2(-10., 5., 0.), 0.5),
+            (std::set<TileIndex>{{-19, 10}, {-18, 10}}));
+  EXPECT_TRUE(
+      OverlapTiles(row, row, Rigid2(1.3, 0., 0.), Rigid2(), 0.5).empty());
 }
 
 }  // namespace
