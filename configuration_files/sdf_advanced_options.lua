@@ -280,13 +280,13 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- --neighbours on the same maps as score_weights.
         weights = {
           -- Of the pair's own score.
-          pair_score = 0.78,
+          pair_score = 0.91,
           -- Of the logarithm of the fraction of the neighbours' wall that
           -- contradicts.
-          log_contradiction = -1.77,
+          log_contradiction = -1.46,
           -- Of the logarithm of the odds at which neighbouring pairs, matched by
           -- themselves, lie where the match predicts them.
-          log_confirmation = 2.29,
+          log_confirmation = 3.52,
           bias = 0.,
         },
         -- Most that the neighbourhood may raise a pair's own score. Larger:
@@ -423,8 +423,8 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- likely right than wrong. At least one must be accepted in any case.
     count_likely_matches = false,
     -- Number of submaps of the query, evenly spaced, to search for in the map
-    -- first; doubled while the answer is uncertain. Larger: slower where few
-    -- suffice.
+    -- first; doubled while the answer is uncertain. Smaller: faster, but
+    -- look-alikes elsewhere may go unnoticed.
     num_first_places = 64,
     -- Number of pairs of submaps that overlap under the answer and are verified
     -- there. Larger: more evidence for and against it, slower.
@@ -443,7 +443,7 @@ SDF_GLOBAL_CONSTRAINTS = {
   fold_check = {
     -- Submaps contradict each other if a larger fraction of their walls lies in
     -- each other's free space. Larger: tolerates more change between the maps.
-    max_contradiction_ratio = 0.05,
+    max_contradiction_ratio = 0.15,
   },
   -- Detection of doubtful constraints of a map (audit). The other options are
   -- those of loop_closing.

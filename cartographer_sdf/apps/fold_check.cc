@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/localization/confirmation.h"
@@ -54,6 +55,28 @@ std::optional<Overlap> FindOverlap(const FoldCheckOptions& options,
   return Overlap{
       FindContradiction(verification, options.max_contradiction_ratio,
                         *pair.reference, *pair.query, T_reference_query)};
+}
+
+using Overlaps = std::map<std::pair<size_t, size_t>, SessionOverlap>;
+
+bool IsFolded(const FoldCheckOptions& options, const SessionOverlap& overlap) {
+  return static_cast<double>(overlap.contradictions.size()) >
+         options.max_folded_fraction * overlap.num_overlapping;
+}
+
+// Returns the one of the two sessions that has more folded pairs of sessions,
+// on ties the later: the first is what the others are added to.
+size_t SessionAtFault(const FoldCheckOptions& options, const Overlaps& overlaps,
+                      const std::pair<size_t, size_t>& ids) {
+  std::map<size_t, int> num_folded;
+  for (const auto& [pair, overlap] : overlaps) {
+    if (!IsFolded(options, overlap)) continue;
+    for (const size_t session : std::set<size_t>{pair.first, pair.second}) {
+      ++num_folded[session];
+    }
+  }
+  return num_folded[ids.first] > num_folded[ids.second] ? ids.first
+                                                        : ids.second;
 }
 
 }  // namespace
@@ -105,26 +128,25 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
   return overlaps;
 }
 
-std::string DescribeFold(
+std::optional<MergingFault> FindFold(
     const FoldCheckOptions& options,
     const std::map<std::pair<size_t, size_t>, SessionOverlap>& overlaps,
     const std::vector<const Session*>& sessions) {
   for (const auto& [ids, overlap] : overlaps) {
-    const size_t num_folded = overlap.contradictions.size();
-    if (static_cast<double>(num_folded) <=
-        options.max_folded_fraction * overlap.num_overlapping) {
-      continue;
-    }
+    if (!IsFolded(options, overlap)) continue;
     const PairPose& example = overlap.contradictions.front().pair;
-    return absl::StrFormat(
-        "the merged map would be folded: of %d pairs of submaps of %s and %s "
-        "that it lays over each other %d have walls in each other's free "
-        "space, such as %d,%d and %d,%d",
-        overlap.num_overlapping, sessions[ids.first]->path,
-        sessions[ids.second]->path, num_folded, example.reference.trajectory,
-        example.reference.index, example.query.trajectory, example.query.index);
+    return MergingFault{
+        absl::StrFormat(
+            "the merged map would be folded: of %d pairs of submaps of %s and "
+            "%s that it lays over each other %d have walls in each other's "
+            "free space, such as %d,%d and %d,%d",
+            overlap.num_overlapping, sessions[ids.first]->path,
+            sessions[ids.second]->path, overlap.contradictions.size(),
+            example.reference.trajectory, example.reference.index,
+            example.query.trajectory, example.query.index),
+        SessionAtFault(options, overlaps, ids)};
   }
-  return "";
+  return std::nullopt;
 }
 
 }  // namespace cartographer_sdf

@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_SDF_APPS_FOLD_CHECK_H_
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,9 +22,9 @@ namespace cartographer_sdf {
 struct FoldCheckOptions {
   // Two submaps contradict each other if a larger fraction of their walls lies
   // in the other's free space (mean of both directions). The ratio is about
-  // 0.01 for correctly placed walls, and 0.05 or more where half a building is
-  // laid over another one.
-  double max_contradiction_ratio = 0.05;
+  // 0.01 for correctly placed walls, up to 0.13 where furniture was moved, and
+  // mostly more where a building is laid over another one.
+  double max_contradiction_ratio = 0.15;
   // Largest fraction of contradicting pairs among the pairs of submaps of two
   // sessions, or within one, that overlap in the merged map. A larger fraction
   // is a fold.
@@ -44,10 +45,19 @@ struct SessionOverlap {
     const JoinedSessions& joined, const PoseGraph& merged,
     const Executor& executor);
 
-// Returns why the merged map is folded, a sentence with an example, or an empty
-// string if it is not. Each pair of sessions is judged separately: a long map
-// that agrees with itself must not outweigh the contradictions of a short one.
-[[nodiscard]] std::string DescribeFold(
+// Why a merged map cannot be right, and the session that is most likely at
+// fault.
+struct MergingFault {
+  std::string reason;
+  size_t session = 0;
+};
+
+// Returns none if the merged map is not folded; otherwise the reason is a
+// sentence with an example, and at fault is the session of the folded pair
+// whose submaps contradict others most often. Each pair of sessions is judged
+// separately: a long map that agrees with itself must not outweigh the
+// contradictions of a short one.
+[[nodiscard]] std::optional<MergingFault> FindFold(
     const FoldCheckOptions& options,
     const std::map<std::pair<size_t, size_t>, SessionOverlap>& overlaps,
     const std::vector<const Session*>& sessions);

@@ -44,14 +44,16 @@ bool IsCertain(const SessionLink& link) {
 }
 
 // Returns (first of the group <- session) for the sessions of a group, along
-// the most certain links.
-std::map<size_t, Rigid2> PlaceSessions(const size_t first,
-                                       const std::vector<SessionLink>& links) {
+// the most certain links, without those in `left_out`.
+std::map<size_t, Rigid2> PlaceSessions(
+    const size_t first, const std::vector<SessionLink>& links,
+    const std::map<size_t, std::string>& left_out) {
   std::map<size_t, Rigid2> placed = {{first, Rigid2()}};
   while (true) {
     const SessionLink* best = nullptr;
     for (const SessionLink& link : links) {
-      if (!IsCertain(link) ||
+      if (!IsCertain(link) || left_out.count(link.first) > 0 ||
+          left_out.count(link.second) > 0 ||
           placed.count(link.first) == placed.count(link.second)) {
         continue;
       }
@@ -97,55 +99,11 @@ std::string DescribeStrangers(const MergingResult& result) {
                       most_alike.localization.reason);
 }
 
-// Returns the accepted matches of the joined map: between sessions those that
-// vote for the placement, and with `also_within` also those within each
-// session.
-std::vector<Match> CollectMatches(const LoopClosingOptions& stages,
-                                  const std::vector<const Session*>& sessions,
-                                  const JoinedSessions& joined,
-                                  const std::vector<SessionLink>& links,
-                                  const bool also_within,
-                                  const Executor& executor,
-                                  StageClock* const clock) {
-  std::vector<Match> matches;
-  const auto add = [&](Match match, const size_t first, const size_t second) {
-    const auto reference_part = joined.parts.find(first);
-    const auto query_part = joined.parts.find(second);
-    if (reference_part == joined.parts.end() ||
-        query_part == joined.parts.end()) {
-      return;
-    }
-    PairPose& pair = match.pair;
-    pair.reference = Renumbered(reference_part->second, pair.reference);
-    pair.query = Renumbered(query_part->second, pair.query);
-    matches.push_back(std::move(match));
-  };
-  for (size_t k = 0; also_within && k < sessions.size(); ++k) {
-    if (joined.parts.count(k) == 0) continue;
-    for (const Match& match : RecognizeWithin(
-             stages.recognition, sessions[k]->map.trajectory_places(), executor,
-             clock)) {
-      add(match, k, k);
-    }
-  }
-  for (const SessionLink& link : links) {
-    if (!IsCertain(link)) continue;
-    for (const size_t vote : link.localization.placements.front().votes) {
-      add(link.localization.matches[vote], link.first, link.second);
-    }
-  }
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const Match& a, const Match& b) {
-                     return IsBeforeByIds(a.pair, b.pair);
-                   });
-  return matches;
-}
-
-// Returns why the closures in the graph do not connect all joined sessions, or
-// an empty string.
-std::string DescribeSplit(const JoinedSessions& joined,
-                          const std::vector<Closure>& closures,
-                          const std::vector<const Session*>& sessions) {
+// Returns a session that the closures in the graph do not connect with the
+// first, and why; none if they connect all.
+std::optional<MergingFault> FindSplit(
+    const JoinedSessions& joined, const std::vector<Closure>& closures,
+    const std::vector<const Session*>& sessions) {
   std::vector<size_t> groups = SingleGroups(sessions.size());
   for (const Closure& closure : closures) {
     if (closure.status != ClosureStatus::kInGraph &&
@@ -158,52 +116,123 @@ std::string DescribeSplit(const JoinedSessions& joined,
   const size_t first = joined.parts.begin()->first;
   for (const auto& [session, part] : joined.parts) {
     if (groups[session] == groups[first]) continue;
-    return absl::StrCat("the optimised map contradicts all matches of ",
-                        sessions[session]->path, " with ",
-                        sessions[first]->path,
-                        ": they show places that look alike");
+    return MergingFault{
+        absl::StrCat("the optimised map contradicts all matches of ",
+                     sessions[session]->path, " with ", sessions[first]->path,
+                     ": they show places that look alike"),
+        session};
   }
-  return "";
+  return std::nullopt;
 }
 
-// Joins the sessions in `placed` and closes loops in the joined graph.
-void JoinAndClose(const FoldCheckOptions& options,
-                  const LoopClosingOptions& stages,
-                  const std::vector<const Session*>& sessions,
-                  const std::map<size_t, Rigid2>& placed,
-                  const bool closes_within,
-                  const std::set<int>& frozen_trajectories,
-                  const Executor& executor, StageClock* const clock,
-                  MergingResult* const result) {
-  JoinedSessions joined = JoinSessions(stages.closing, sessions, placed);
-  for (const auto& [session, pose] : placed) {
-    result->sessions[session].T_merged_session = pose;
+// Joins sessions and closes loops in the joined graph. Finds the matches within
+// each session only once.
+class SessionJoiner {
+ public:
+  // Nothing is owned.
+  SessionJoiner(const FoldCheckOptions& options,
+                const LoopClosingOptions& stages,
+                std::vector<const Session*> sessions,
+                const std::set<int>& frozen_trajectories,
+                const Executor& executor, StageClock* const clock)
+      : options_(options),
+        stages_(stages),
+        sessions_(std::move(sessions)),
+        frozen_trajectories_(frozen_trajectories),
+        executor_(executor),
+        clock_(clock) {}
+
+  // Joins the sessions in `placed` and fills in the result, which has the
+  // links. Returns why the map cannot be right, if so.
+  std::optional<MergingFault> JoinAndClose(
+      const std::map<size_t, Rigid2>& placed, const bool closes_within,
+      MergingResult* const result) {
+    JoinedSessions joined = JoinSessions(stages_.closing, sessions_, placed);
+    for (const auto& [session, pose] : placed) {
+      result->sessions[session].T_merged_session = pose;
+    }
+    result->closed =
+        CloseGraph(stages_.closing,
+                   {&joined.placed, &joined.odometry, &joined.places,
+                    &joined.point_clouds},
+                   CollectMatches(joined, result->links, closes_within),
+                   frozen_trajectories_, executor_, clock_);
+    clock_->Begin("check for folds");
+    const auto overlaps = CheckOverlaps(options_, stages_.recognition, joined,
+                                        result->closed.pose_graph, executor_);
+    for (const auto& [ids, overlap] : overlaps) {
+      result->num_overlapping += overlap.num_overlapping;
+      result->contradictions.insert(result->contradictions.end(),
+                                    overlap.contradictions.begin(),
+                                    overlap.contradictions.end());
+    }
+    std::optional<MergingFault> fault =
+        FindSplit(joined, result->closed.closures, sessions_);
+    if (!fault) fault = FindFold(options_, overlaps, sessions_);
+    RemoveScanSubmaps(joined, &result->closed.pose_graph);
+    for (auto& [session, part] : joined.parts) {
+      result->parts.push_back(std::move(part));
+    }
+    result->state = std::move(joined.state);
+    return fault;
   }
-  result->closed = CloseGraph(
-      stages.closing,
-      {&joined.placed, &joined.odometry, &joined.places, &joined.point_clouds},
-      CollectMatches(stages, sessions, joined, result->links, closes_within,
-                     executor, clock),
-      frozen_trajectories, executor, clock);
-  clock->Begin("check for folds");
-  const auto overlaps = CheckOverlaps(options, stages.recognition, joined,
-                                      result->closed.pose_graph, executor);
-  for (const auto& [ids, overlap] : overlaps) {
-    result->num_overlapping += overlap.num_overlapping;
-    result->contradictions.insert(result->contradictions.end(),
-                                  overlap.contradictions.begin(),
-                                  overlap.contradictions.end());
+
+ private:
+  const std::vector<Match>& MatchesWithin(const size_t session) {
+    const auto [found, is_new] = within_.try_emplace(session);
+    if (is_new) {
+      found->second = RecognizeWithin(
+          stages_.recognition, sessions_[session]->map.trajectory_places(),
+          executor_, clock_);
+    }
+    return found->second;
   }
-  result->refusal = DescribeSplit(joined, result->closed.closures, sessions);
-  if (result->refusal.empty()) {
-    result->refusal = DescribeFold(options, overlaps, sessions);
+
+  // Returns the accepted matches of the joined map: between sessions those that
+  // vote for the placement, and with `also_within` also those within each
+  // session.
+  std::vector<Match> CollectMatches(const JoinedSessions& joined,
+                                    const std::vector<SessionLink>& links,
+                                    const bool also_within) {
+    std::vector<Match> matches;
+    const auto add = [&](Match match, const size_t first, const size_t second) {
+      const auto reference_part = joined.parts.find(first);
+      const auto query_part = joined.parts.find(second);
+      if (reference_part == joined.parts.end() ||
+          query_part == joined.parts.end()) {
+        return;
+      }
+      PairPose& pair = match.pair;
+      pair.reference = Renumbered(reference_part->second, pair.reference);
+      pair.query = Renumbered(query_part->second, pair.query);
+      matches.push_back(std::move(match));
+    };
+    if (also_within) {
+      for (const auto& [k, part] : joined.parts) {
+        for (const Match& match : MatchesWithin(k)) add(match, k, k);
+      }
+    }
+    for (const SessionLink& link : links) {
+      if (!IsCertain(link)) continue;
+      for (const size_t vote : link.localization.placements.front().votes) {
+        add(link.localization.matches[vote], link.first, link.second);
+      }
+    }
+    std::stable_sort(matches.begin(), matches.end(),
+                     [](const Match& a, const Match& b) {
+                       return IsBeforeByIds(a.pair, b.pair);
+                     });
+    return matches;
   }
-  RemoveScanSubmaps(joined, &result->closed.pose_graph);
-  for (auto& [session, part] : joined.parts) {
-    result->parts.push_back(std::move(part));
-  }
-  result->state = std::move(joined.state);
-}
+
+  const FoldCheckOptions& options_;
+  const LoopClosingOptions& stages_;
+  const std::vector<const Session*> sessions_;
+  const std::set<int>& frozen_trajectories_;
+  const Executor& executor_;
+  StageClock* const clock_;
+  std::map<size_t, std::vector<Match>> within_;
+};
 
 std::vector<std::string> PathsOf(const std::vector<MapSource>& sources) {
   std::vector<std::string> paths;
@@ -276,6 +305,59 @@ std::string FindRefusal(const MergingResult& result,
   return "";
 }
 
+// Says of each session that is not in the map why.
+void ExplainLeftOut(const std::map<size_t, std::string>& faults,
+                    MergingResult* const result) {
+  for (size_t k = 0; k < result->sessions.size(); ++k) {
+    MergedSession& session = result->sessions[k];
+    if (session.T_merged_session) continue;
+    const auto fault = faults.find(k);
+    session.left_out = fault != faults.end()
+                           ? fault->second
+                           : "not connected with the other maps";
+  }
+}
+
+// Takes over an attempt, but for the stages that the clock writes to.
+void Conclude(MergingResult attempt,
+              const std::map<size_t, std::string>& faults,
+              MergingResult* const result) {
+  attempt.stage_seconds = std::move(result->stage_seconds);
+  *result = std::move(attempt);
+  ExplainLeftOut(faults, result);
+}
+
+// Joins a group of connected sessions. While the map cannot be right, leaves
+// out the session at fault; if that does not help, the result is the first map
+// and its fault. The first of all sessions stays if trajectories are frozen.
+void JoinGroup(const size_t group, const bool has_frozen_trajectories,
+               SessionJoiner* const joiner, MergingResult* const result) {
+  std::map<size_t, std::string> left_out;
+  std::optional<MergingResult> first_attempt;
+  while (true) {
+    size_t first = group;
+    while (left_out.count(first) > 0 ||
+           result->sessions[first].group != group) {
+      ++first;
+    }
+    const std::map<size_t, Rigid2> placed =
+        PlaceSessions(first, result->links, left_out);
+    MergingResult attempt = *result;
+    std::optional<MergingFault> fault;
+    if (placed.size() > 1) {
+      fault = joiner->JoinAndClose(placed, /*closes_within=*/true, &attempt);
+      if (!fault) return Conclude(std::move(attempt), left_out, result);
+      attempt.refusal = fault->reason;
+      if (!first_attempt) first_attempt = std::move(attempt);
+    }
+    if (placed.size() <= 2 ||
+        (has_frozen_trajectories && fault->session == 0)) {
+      return Conclude(*std::move(first_attempt), {}, result);
+    }
+    left_out.emplace(fault->session, fault->reason);
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<MergingResult> MergeSessions(
@@ -302,19 +384,18 @@ absl::StatusOr<MergingResult> MergeSessions(
     if (IsCertain(link)) JoinGroups(link.first, link.second, &groups);
   }
   for (size_t k = 0; k < paths.size(); ++k) {
-    result.sessions.push_back({paths[k], groups[k], {}});
+    result.sessions.push_back({paths[k], groups[k], {}, ""});
   }
-  const std::map<size_t, Rigid2> placed =
-      PlaceSessions(LargestGroup(groups), result.links);
-  result.refusal = FindRefusal(result, placed, !frozen_trajectories.empty());
-  if (!result.refusal.empty()) {
-    clock.End();
-    return result;
+  const size_t group = LargestGroup(groups);
+  result.refusal = FindRefusal(result, PlaceSessions(group, result.links, {}),
+                               !frozen_trajectories.empty());
+  if (result.refusal.empty()) {
+    std::vector<const Session*> pointers;
+    for (const Session& session : *sessions) pointers.push_back(&session);
+    SessionJoiner joiner(options, stages, std::move(pointers),
+                         frozen_trajectories, executor, &clock);
+    JoinGroup(group, !frozen_trajectories.empty(), &joiner, &result);
   }
-  std::vector<const Session*> pointers;
-  for (const Session& session : *sessions) pointers.push_back(&session);
-  JoinAndClose(options, stages, pointers, placed, /*closes_within=*/true,
-               frozen_trajectories, executor, &clock, &result);
   clock.End();
   return result;
 }
@@ -328,17 +409,19 @@ absl::StatusOr<MergingResult> AttachQuery(
   const absl::Status status = CheckPaths({map.path, query.path});
   if (!status.ok()) return status;
   MergingResult result;
-  result.sessions = {{map.path, 0, {}}, {query.path, 0, {}}};
+  result.sessions = {{map.path, 0, {}, ""}, {query.path, 0, {}, ""}};
   result.links = {{0, 1, localization}};
   std::set<int> frozen_trajectories;
   for (size_t k = 0; k < map.map.state.trajectories.size(); ++k) {
     frozen_trajectories.insert(static_cast<int>(k));
   }
   StageClock clock(on_stage, &result.stage_seconds);
-  JoinAndClose(options, stages, {&map, &query},
-               {{0, Rigid2()}, {1, *localization.T_map_query}},
-               /*closes_within=*/false, frozen_trajectories, executor, &clock,
-               &result);
+  const std::optional<MergingFault> fault =
+      SessionJoiner(options, stages, {&map, &query}, frozen_trajectories,
+                    executor, &clock)
+          .JoinAndClose({{0, Rigid2()}, {1, *localization.T_map_query}},
+                        /*closes_within=*/false, &result);
+  if (fault) result.refusal = fault->reason;
   clock.End();
   return result;
 }

@@ -34,6 +34,8 @@ struct MergedSession {
   size_t group = 0;
   // Its placement before the optimisation; none if it is not in the merged map.
   std::optional<Rigid2> T_merged_session;
+  // Why it is not in the merged map; empty if it is.
+  std::string left_out;
 };
 
 struct MergingResult {
@@ -57,10 +59,12 @@ struct MergingResult {
 };
 
 // Finds the links between all sessions and the closures within each, and joins
-// the largest connected group, on ties the first. The map frame is that of the
-// first session in it. Frozen trajectories, numbered in the order of all
-// sessions' trajectories, stay fixed; all must belong to that first session.
-// Fails if a file cannot be read, or if there is no such trajectory.
+// the largest connected group, on ties the first. While the map would be folded
+// and more than two sessions are in it, leaves out the session that is most
+// likely at fault. The map frame is that of the first session that stays.
+// Frozen trajectories, numbered in the order of all sessions' trajectories,
+// stay fixed; all must belong to that first session. Fails if a file cannot be
+// read, or if there is no such trajectory.
 [[nodiscard]] absl::StatusOr<MergingResult> MergeSessions(
     const FoldCheckOptions& options, const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,

@@ -34,7 +34,7 @@ struct LocalizationOptions {
   bool count_likely_matches = false;
   // Places of the query, evenly spaced, that are matched at first. While the
   // answer is uncertain, the number doubles, and those that are new are
-  // matched. Larger: slower where few are enough.
+  // matched. Smaller: faster, but look-alikes elsewhere may go unnoticed.
   int num_first_places = 64;
   // Largest number of pairs of submaps that are verified to confirm the answer.
   // Larger: more agreeing and contradicting matches, slower.

@@ -54,8 +54,8 @@ struct NeighbourhoodEvidence {
   int num_pairs = 0;
   double wall_length = 0.;           // within the other's observed area [m]
   double contradicting_length = 0.;  // part in the other's free space [m]
-  // Pairs that were matched by themselves where predicted, counted as far as
-  // they show ground that neither the match nor another of them shows ...
+  // Pairs that were matched by themselves where predicted: the geometric mean
+  // of their number and of how many would have shown as much new ground ...
   double num_confirming = 0.;
   // ... and elsewhere: the sum of their probabilities of being right there.
   double num_refuting = 0.;

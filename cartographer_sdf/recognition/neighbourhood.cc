@@ -81,13 +81,14 @@ double Probability(const double log_odds) {
   return 1. / (1. + std::exp(-log_odds));
 }
 
-// Pairs that see the same ground say the same: four submaps of one hall that
-// agree on where it is are one witness, not four. Ground is counted in tiles.
-class IndependentPairs {
+// Counts pairs that confirm a match. Pairs that see the same ground are
+// independent witnesses against noise, but a single one against a look-alike:
+// four submaps of one hall that agree on where it is may agree on the wrong
+// hall. They count as the geometric mean of both. Ground is counted in tiles.
+class ConfirmingPairs {
  public:
   // `seen` is the ground of the match itself.
-  explicit IndependentPairs(std::set<TileIndex> seen)
-      : seen_(std::move(seen)) {}
+  explicit ConfirmingPairs(std::set<TileIndex> seen) : seen_(std::move(seen)) {}
 
   void Add(const std::set<TileIndex>& tiles) {
     ++num_pairs_;
@@ -96,12 +97,14 @@ class IndependentPairs {
                         std::inserter(news_, news_.end()));
   }
 
-  // The number of pairs of the mean size that would have shown all new ground
-  // without showing any of it twice. Independent of the order of the pairs.
+  // Independent of the order of the pairs.
   [[nodiscard]] double Count() const {
     if (num_tiles_ == 0) return 0.;
-    return static_cast<double>(num_pairs_ * news_.size()) /
-           static_cast<double>(num_tiles_);
+    const double count = static_cast<double>(num_pairs_);
+    // Pairs of the mean size that would have shown no ground twice.
+    const double independent = count * static_cast<double>(news_.size()) /
+                               static_cast<double>(num_tiles_);
+    return std::sqrt(count * independent);
   }
 
  private:
@@ -197,7 +200,7 @@ class NeighbourhoodMeasurer {
   const VerificationOptions& verification_;
   const NeighbourhoodMaps& maps_;
   const SubmapId reference_;  // of the match
-  IndependentPairs confirming_;
+  ConfirmingPairs confirming_;
   AgreementOptions agreement_;
   Neighbourhood neighbourhood_;
 };
@@ -250,9 +253,9 @@ double LogContradiction(const NeighbourhoodOptions& options,
 }
 
 double LogConfirmation(const NeighbourhoodEvidence& evidence) {
-  // Half a match for and half a match against keep it finite.
-  return std::log((evidence.num_confirming + 0.5) /
-                  (evidence.num_refuting + 0.5));
+  // One match for and one against keep it finite.
+  return std::log((evidence.num_confirming + 1.) /
+                  (evidence.num_refuting + 1.));
 }
 
 std::array<const char*, kNumNeighbourhoodTerms> NeighbourhoodTermNames() {

@@ -11,7 +11,8 @@
 // Many of these pairs were also matched by themselves, from features alone.
 // Where such a match lies at the predicted pose, two searches that know nothing
 // of each other agree: the strongest evidence there is, and one that moved
-// furniture leaves alone.
+// furniture leaves alone. It is the stronger the more ground the two show that
+// the match does not: what resembles another place does so from any submap.
 //
 // A prediction is also a hypothesis: it finds poses that a pair's own features
 // did not propose. Poses of the optimised map are not used, and a match is
@@ -40,9 +41,9 @@ namespace cartographer_sdf {
 // NeighbourhoodOptions::max_gain. Learned by logistic regression; see
 // scripts/learn_score.py.
 struct NeighbourhoodWeights {
-  double pair_score = 0.78;
-  double log_contradiction = -1.77;
-  double log_confirmation = 2.29;
+  double pair_score = 0.91;
+  double log_contradiction = -1.46;
+  double log_confirmation = 3.52;
   double bias = 0.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodWeights& weights);

@@ -69,6 +69,7 @@ Json SessionsJson(const MergingResult& result) {
     json.push_back({{"path", session.path},
                     {"group", session.group},
                     {"merged", is_merged},
+                    {"left_out", session.left_out},
                     {"T_merged_session", ToJson(session.T_merged_session)}});
   }
   return json;

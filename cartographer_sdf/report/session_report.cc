@@ -120,11 +120,10 @@ void AddMergingSummary(const MergingResult& result,
         absl::StrCat(k + 1, ": ", names[k]),
         session.T_merged_session
             ? "placed at " + FormatPose(*session.T_merged_session)
-            : "not connected with the merged maps");
+            : "not in the merged map: " + session.left_out);
     if (!session.T_merged_session) {
       content->warnings.push_back(absl::StrCat(
-          names[k],
-          " is not connected with the others and is not in the map."));
+          names[k], " is not in the merged map: ", session.left_out, "."));
     }
   }
   for (const SessionLink& link : result.links) {

@@ -34,7 +34,7 @@ void PrintSummary(const MergingResult& result) {
     if (session.T_merged_session) {
       std::cout << "at " << FormatPose(*session.T_merged_session) << "\n";
     } else {
-      std::cout << "NOT CONNECTED, not in the merged map\n";
+      std::cout << "NOT in the merged map: " << session.left_out << "\n";
     }
   }
   for (const SessionLink& link : result.links) {

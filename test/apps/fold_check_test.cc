@@ -112,20 +112,36 @@ SessionOverlap Overlap(const int num_overlapping,
   return overlap;
 }
 
-TEST(DescribeFoldTest, JudgesEachPairOfSessionsApart) {
+TEST(FindFoldTest, JudgesEachPairOfSessionsApart) {
   const Session a{"a", {}, {}}, b{"b", {}, {}};
   const std::vector<const Session*> sessions = {&a, &b};
   const FoldCheckOptions options;
-  EXPECT_EQ(DescribeFold(options, {}, sessions), "");
+  EXPECT_FALSE(FindFold(options, {}, sessions));
   // As much as is allowed.
-  EXPECT_EQ(DescribeFold(options, {{{0, 1}, Overlap(10, 2)}}, sessions), "");
+  EXPECT_FALSE(FindFold(options, {{{0, 1}, Overlap(10, 2)}}, sessions));
+  const std::optional<MergingFault> fault =
+      FindFold(options, {{{0, 0}, Overlap(1000, 0)}, {{0, 1}, Overlap(10, 3)}},
+               sessions);
+  ASSERT_TRUE(fault);
   EXPECT_EQ(
-      DescribeFold(options,
-                   {{{0, 0}, Overlap(1000, 0)}, {{0, 1}, Overlap(10, 3)}},
-                   sessions),
+      fault->reason,
       "the merged map would be folded: of 10 pairs of submaps of a and b that "
       "it lays over each other 3 have walls in each other's free space, such "
       "as 0,4 and 1,7");
+  // The later one.
+  EXPECT_EQ(fault->session, 1u);
+}
+
+TEST(FindFoldTest, AtFaultIsTheSessionThatIsFoldedWithMostOthers) {
+  const Session a{"a", {}, {}}, b{"b", {}, {}}, c{"c", {}, {}};
+  const std::vector<const Session*> sessions = {&a, &b, &c};
+  const std::optional<MergingFault> fault = FindFold(FoldCheckOptions(),
+                                                     {{{0, 1}, Overlap(10, 4)},
+                                                      {{0, 2}, Overlap(10, 0)},
+                                                      {{1, 2}, Overlap(10, 4)}},
+                                                     sessions);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->session, 1u);
 }
 
 TEST(FoldCheckOptionsTest, SaysWhatIsWrong) {

@@ -84,6 +84,20 @@ TEST_F(MergingTest, AMapThatWouldBeFoldedIsRefusedAndExplained) {
   }
 }
 
+TEST_F(MergingTest, ASessionThatWouldFoldTheMapIsLeftOut) {
+  const MergingResult merged = MergeCredulously({Before(), Rebuilt(), Again()});
+  EXPECT_EQ(merged.refusal, "");
+  ASSERT_EQ(merged.sessions.size(), 3u);
+  EXPECT_TRUE(merged.sessions[0].T_merged_session);
+  EXPECT_FALSE(merged.sessions[1].T_merged_session);
+  EXPECT_THAT(merged.sessions[1].left_out,
+              HasSubstr("the merged map would be folded"));
+  EXPECT_TRUE(merged.sessions[2].T_merged_session);
+  EXPECT_EQ(merged.sessions[2].left_out, "");
+  EXPECT_EQ(merged.parts.size(), 2u);
+  EXPECT_THAT(merged.contradictions, IsEmpty());
+}
+
 TEST_F(MergingTest, ATrajectoryWithoutSubmapsTakesPartByItsScans) {
   // And two sessions of one building are no fold.
   const MergingResult merged = MergeCredulously({Before(), Again()});

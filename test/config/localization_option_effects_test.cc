@@ -181,8 +181,10 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfTheFoldCheckIsWithout) {
          for (const auto& [ids, overlap] : overlaps) {
            num_contradictions += overlap.contradictions.size();
          }
+         const std::optional<MergingFault> fault =
+             FindFold(options, overlaps, {&first, &second});
          return std::to_string(num_contradictions) +
-                DescribeFold(options, overlaps, {&first, &second});
+                (fault ? fault->reason : "");
        }}};
   FoldCheckOptions base;
   base.max_folded_fraction = 0.3;

@@ -165,7 +165,7 @@ TEST(NeighbourhoodTest, AMatchWherePredictedConfirms) {
   EXPECT_LE(confirmed.evidence.num_confirming, 1.);
   EXPECT_EQ(confirmed.evidence.num_refuting, 0.);
   EXPECT_NEAR(LogConfirmation(confirmed.evidence),
-              std::log((confirmed.evidence.num_confirming + 0.5) / 0.5), 1e-12);
+              std::log(confirmed.evidence.num_confirming + 1.), 1e-12);
   // The pair has found it already.
   EXPECT_FALSE(
       Proposes(confirmed, TwoVisits::kEastFirst, TwoVisits::kEastAgain));
@@ -187,7 +187,7 @@ TEST(NeighbourhoodTest, GroundThatTheMatchShowsConfirmsNothing) {
   };
   // The room is seen in full from either; what is new lies behind the door.
   EXPECT_LT(confirming(TwoVisits::kWestAgain, visits.T_west_first_west_again()),
-            0.25);
+            0.5);
 }
 
 TEST(NeighbourhoodTest, AMatchElsewhereRefutesByItsProbability) {
@@ -196,7 +196,7 @@ TEST(NeighbourhoodTest, AMatchElsewhereRefutesByItsProbability) {
       AskWithEastMatch(visits, Rigid2(3., 0., 0.), std::log(0.8 / 0.2));
   EXPECT_EQ(refuted.evidence.num_confirming, 0);
   EXPECT_NEAR(refuted.evidence.num_refuting, 0.8, 1e-12);
-  EXPECT_NEAR(LogConfirmation(refuted.evidence), std::log(0.5 / 1.3), 1e-12);
+  EXPECT_NEAR(LogConfirmation(refuted.evidence), std::log(1. / 1.8), 1e-12);
   // The walls are compared where they were predicted.
   EXPECT_EQ(refuted.evidence.contradicting_length,
             Ask(visits, visits.T_west_first_west_again())
@@ -246,7 +246,7 @@ TEST(NeighbourhoodScoreTest, IsLinearInItsTerms) {
   const NeighbourhoodEvidence evidence{4, 50., 10., 2, 0.25};
   EXPECT_NEAR(NeighbourhoodScore(options, 6., evidence),
               0.5 * 6. - 4. * LogContradiction(options, evidence) +
-                  2. * std::log(2.5 / 0.75) - 1.,
+                  2. * std::log(3. / 1.25) - 1.,
               1e-12);
 }
 

@@ -144,7 +144,9 @@ TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
   };
   const ProgramResult result = merge(File("merged.pbstream"), "1");
   ASSERT_EQ(result.exit_code, 0) << result.error;
-  EXPECT_THAT(result.output, HasSubstr("elsewhere.pbstream: NOT CONNECTED"));
+  EXPECT_THAT(result.output,
+              HasSubstr("elsewhere.pbstream: NOT in the merged map: "
+                        "not connected with the other maps"));
   const Json json = ParseFile("merged.json");
   EXPECT_THAT(
       NamesOf(json),
@@ -159,7 +161,7 @@ TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
   ASSERT_EQ(json["pairs"].size(), 3u);
   EXPECT_EQ(json["pairs"][0]["connected"], false);
   EXPECT_THAT(offices_->Read("merged/index.html"),
-              HasSubstr("is not connected with the others"));
+              HasSubstr("is not in the merged map"));
   const auto merged = ReadMap(File("merged.pbstream"));
   ASSERT_TRUE(merged.ok()) << merged.status();
   EXPECT_EQ(merged->trajectories.size(), 2u);
