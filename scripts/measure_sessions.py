@@ -130,7 +130,7 @@ def measure_windows_of(m, reference, query, seconds, truths, submap_map=None):
     results = m.relocalize(reference, query, "--first_seconds", str(seconds),
                            "--num_starts", str(NUM_STARTS))
     right, wrong, verdicts, errors, milliseconds = 0, 0, {}, [], []
-    for entry in results:
+    for entry in results["starts"]:
         result = entry["result"]
         milliseconds.append(sum(result["milliseconds"].values()))
         if not result["localized"]:

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "glog/logging.h"
 
@@ -58,13 +59,17 @@ std::vector<double> Multiples(const double step, const double begin,
   return multiples;
 }
 
-}  // namespace
+constexpr int kMaxPicturePixels = 16384;
 
-MapPainter::MapPainter(const std::vector<PlacedGrid>& grids,
-                       const int max_pixels) {
-  CHECK_GE(max_pixels, 1);
+// What a picture of the grids shows [m], and their finest cell.
+struct DrawnGrids {
   Eigen::AlignedBox2d bounds;
-  finest_resolution_ = std::numeric_limits<double>::infinity();
+  double finest_resolution = std::numeric_limits<double>::infinity();
+  int num_grids = 0;
+};
+
+DrawnGrids BoundGrids(const std::vector<PlacedGrid>& grids) {
+  DrawnGrids drawn;
   for (const PlacedGrid& grid : grids) {
     if ((grid.geometry.size <= 0).any() || !IsDrawable(grid.T_map_submap)) {
       continue;
@@ -74,25 +79,73 @@ MapPainter::MapPainter(const std::vector<PlacedGrid>& grids,
         grid.geometry.size.cast<double>() * grid.geometry.resolution;
     for (const double x : {0., size.x()}) {
       for (const double y : {0., size.y()}) {
-        bounds.extend(T_map_grid * Eigen::Vector2d(x, y));
+        drawn.bounds.extend(T_map_grid * Eigen::Vector2d(x, y));
       }
     }
-    finest_resolution_ = std::min(finest_resolution_, grid.geometry.resolution);
+    ++drawn.num_grids;
+    drawn.finest_resolution =
+        std::min(drawn.finest_resolution, grid.geometry.resolution);
   }
-  if (bounds.isEmpty()) {
-    bounds.extend(Eigen::Vector2d::Zero());
-    finest_resolution_ = 0.05;
+  if (drawn.bounds.isEmpty()) {
+    drawn.bounds.extend(Eigen::Vector2d::Zero());
+    drawn.finest_resolution = 0.05;
   }
-  bounds.min().array() -= kMarginMeters;
-  bounds.max().array() += kMarginMeters;
-  const Eigen::Vector2d extent = bounds.sizes();
-  const double pixel_size =
-      std::max(finest_resolution_, extent.maxCoeff() / max_pixels);
+  drawn.bounds.min().array() -= kMarginMeters;
+  drawn.bounds.max().array() += kMarginMeters;
+  return drawn;
+}
+
+}  // namespace
+
+MapPainter::MapPainter(const std::vector<PlacedGrid>& grids,
+                       const int max_pixels) {
+  CHECK_GE(max_pixels, 1);
+  const DrawnGrids drawn = BoundGrids(grids);
+  finest_resolution_ = drawn.finest_resolution;
+  SetFrame(drawn.bounds,
+           std::max(finest_resolution_,
+                    drawn.bounds.sizes().maxCoeff() / max_pixels),
+           max_pixels);
+}
+
+absl::StatusOr<MapPainter> MapPainter::WithPixelSize(
+    const std::vector<PlacedGrid>& grids, const double pixel_size) {
+  const DrawnGrids drawn = BoundGrids(grids);
+  if (drawn.num_grids == 0) {
+    return absl::InvalidArgumentError("there are no submaps to draw");
+  }
+  const double finest = drawn.finest_resolution;
+  // Files have cells of single precision.
+  constexpr double kMicrometers = 1e6;
+  const double size = pixel_size == 0.
+                          ? std::round(kMicrometers * finest) / kMicrometers
+                          : pixel_size;
+  // A last digit makes no finer cell.
+  if (!(size >= finest * (1. - 1e-6))) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "pixels of ", size, " m are finer than the cells, ", finest, " m"));
+  }
+  if (drawn.bounds.sizes().maxCoeff() > kMaxPicturePixels * size) {
+    return absl::OutOfRangeError(
+        absl::StrCat("pixels of ", size,
+                     " m are too small: there would be "
+                     "more than ",
+                     kMaxPicturePixels, " along a side"));
+  }
+  MapPainter painter;
+  painter.finest_resolution_ = finest;
+  painter.SetFrame(drawn.bounds, size, kMaxPicturePixels);
+  return painter;
+}
+
+void MapPainter::SetFrame(const Eigen::AlignedBox2d& bounds,
+                          const double pixel_size, const int max_pixels) {
   frame_ = PixelFrame{1. / pixel_size, {bounds.min().x(), bounds.max().y()}};
   const auto num_pixels = [&](const double length) {
     return std::clamp(static_cast<int>(std::ceil(length / pixel_size - 1e-6)),
                       1, max_pixels);
   };
+  const Eigen::Vector2d extent = bounds.sizes();
   num_samples_ = occupied_ = free_ =
       Eigen::ArrayXXf::Zero(num_pixels(extent.x()), num_pixels(extent.y()));
 }

@@ -9,9 +9,11 @@
 #define CARTOGRAPHER_SDF_REPORT_MAP_PAINTER_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/report/picture.h"
@@ -30,11 +32,22 @@ class MapPainter {
   // without cells or with an absurd pose (beyond 10 000 km, NaN) are not shown.
   MapPainter(const std::vector<PlacedGrid>& grids, int max_pixels);
 
+  // With pixels of the given size [m]; 0: that of a cell of the finest grid.
+  // Fails if it is smaller than that, if no grid is shown, or if the picture
+  // would have more than 16384 pixels along a side.
+  [[nodiscard]] static absl::StatusOr<MapPainter> WithPixelSize(
+      const std::vector<PlacedGrid>& grids, double pixel_size);
+
   // Uses memory for the picture only, not for the submaps. Drops cells outside
   // the picture.
   void AddSubmap(const OccupancyGrid& grid, const Rigid2& T_map_submap);
 
   [[nodiscard]] const PixelFrame& frame() const { return frame_; }
+  // Size of the picture, in pixels.
+  [[nodiscard]] Eigen::Array2i size() const {
+    return {static_cast<int>(num_samples_.rows()),
+            static_cast<int>(num_samples_.cols())};
+  }
   // Pictures of the submaps added so far, and of an empty map.
   [[nodiscard]] Picture Paint() const;
   [[nodiscard]] Picture UnobservedPicture() const;
@@ -44,6 +57,10 @@ class MapPainter {
   [[nodiscard]] std::optional<double> ExcessAt(int x, int y) const;
 
  private:
+  MapPainter() = default;
+  void SetFrame(const Eigen::AlignedBox2d& bounds, double pixel_size,
+                int max_pixels);
+
   PixelFrame frame_;
   // Per pixel, over the samples of known cells: their number, and the sums of
   // their probabilities' excess above and deficit below 1/2.

@@ -5,6 +5,7 @@
 
 #include <iostream>
 #include <map>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/report/reports.h"
@@ -38,11 +39,35 @@ void PrintSummary(const Audit& audit) {
   PrintPaths();
 }
 
-absl::Status RunAudit() {
+void Record(const Audit& audit, RunRecord* const record) {
+  RecordMap(audit.state, record);
+  record->Count("inter_submap_constraints", audit.constraints.size());
+  record->Count("groups", audit.groups.size());
+  record->Count("doubtful", audit.num_doubtful);
+  Json verdicts = Json::object();
+  for (const AuditedConstraint& constraint : audit.constraints) {
+    const char* const name = AuditVerdictName(constraint.verdict);
+    verdicts[name] = verdicts.value(name, 0) + 1;
+  }
+  record->answer["verdicts"] = std::move(verdicts);
+  RecordConvergence(audit.optimizations, record);
+  if (audit.num_doubtful > 0) {
+    record->Warn(RunWarning::kDoubtful,
+                 absl::StrFormat("%d of %d inter-submap constraints are "
+                                 "doubtful",
+                                 audit.num_doubtful, audit.constraints.size()));
+  }
+  if (audit.constraints.empty()) {
+    record->End(Outcome::kNothing,
+                "the map has no inter-submap constraints to check");
+  }
+}
+
+absl::Status RunAudit(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("audit");
   if (!task.ok()) return task.status();
   const Options& options = task->options;
-  StageProgress progress;
+  StageProgress progress(record);
   const absl::StatusOr<Audit> audit =
       AuditMap(options.loop_closing, options.audit, SourceOfFlags(FLAGS_input),
                task->frozen_trajectories, task->executor, progress.Callback());
@@ -53,13 +78,14 @@ absl::Status RunAudit() {
   }
   if (status.ok()) {
     status = WriteMapAndReport(
-        audit->pose_graph,
+        audit->state, audit->pose_graph,
         [&](const SubmapsReader& read_submaps) {
           return WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input,
                                   *audit, read_submaps);
         },
         &progress);
   }
+  Record(*audit, record);
   if (status.ok()) PrintSummary(*audit);
   return status;
 }
@@ -67,11 +93,11 @@ absl::Status RunAudit() {
 }  // namespace
 
 Subcommand AuditSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "audit",
       "find the constraints of a map that are doubtful",
-      "--input A.pbstream [--output B.pbstream | --in_place] [--report DIR] "
-      "[--constraints C.csv] [--repair]",
+      "A.pbstream [--output B.pbstream | --in_place] [--report DIR] "
+      "[--constraints C.csv] [--result R.json] [--repair]",
       "Checks every inter-submap constraint: whether walls of one submap stand "
       "in free space of the other at the constraint's pose, whether another "
       "pose of the two submaps is as good, whether the constraint agrees with "
@@ -81,9 +107,14 @@ Subcommand AuditSubcommand() {
       "file stays as it is.\n\n"
       "A map without doubtful constraints is copied, byte for byte.",
       {{"input", FileUse::kRead}},
-      {{"output", FileUse::kCopyMap},
+      {{"output",
+        FileUse::kCopyMap,
+        {},
+        "Map to write, a .pbstream without the doubtful constraints."},
        {"report", FileUse::kWriteInto, {"index.html"}},
        {"constraints", FileUse::kWriteText},
+       {"picture", FileUse::kWriteText},
+       "picture_pixels",
        "in_place",
        "backup",
        "repair",
@@ -92,6 +123,9 @@ Subcommand AuditSubcommand() {
        "configuration_basename",
        "threads"},
       &RunAudit};
+  subcommand.check_flags = &CheckPictureFlags;
+  subcommand.positional_flags = {"input"};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

@@ -4,6 +4,8 @@
 #include "cartographer_sdf/apps/close_loops.h"
 
 #include <iostream>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "absl/strings/str_format.h"
@@ -31,6 +33,26 @@ absl::Status WriteClosures(const std::string& path,
   return WriteMatches(path, rows);
 }
 
+void Record(const LoopClosingResult& result, RunRecord* const record) {
+  RecordMap(result.state, record);
+  record->Count("places", result.num_places);
+  record->Count("matches", result.num_matches);
+  record->Count("accepted", result.closed.closures.size());
+  const std::map<std::string, int> statuses =
+      CountStatuses(result.closed.closures);
+  const auto in_graph =
+      statuses.find(ClosureStatusName(ClosureStatus::kInGraph));
+  const int num_closures = in_graph == statuses.end() ? 0 : in_graph->second;
+  record->Count("closures", static_cast<size_t>(num_closures));
+  RecordTornSubmaps(result.closed.torn_submaps, record);
+  RecordConvergence(result.closed.optimizations, record);
+  record->answer["closures"] = Json(statuses);
+  if (num_closures == 0) {
+    record->End(Outcome::kNothing,
+                "no new loop closure was found; the map is unchanged");
+  }
+}
+
 void PrintSummary(const LoopClosingResult& result) {
   PrintRepair(result.state);
   std::cout << absl::StrFormat(
@@ -52,10 +74,10 @@ void PrintSummary(const LoopClosingResult& result) {
   PrintPaths();
 }
 
-absl::Status RunCloseLoops() {
+absl::Status RunCloseLoops(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("close_loops");
   if (!task.ok()) return task.status();
-  StageProgress progress;
+  StageProgress progress(record);
   const absl::StatusOr<LoopClosingResult> result = CloseLoops(
       task->options.loop_closing, SourceOfFlags(FLAGS_input),
       task->frozen_trajectories, task->executor, progress.Callback());
@@ -66,13 +88,14 @@ absl::Status RunCloseLoops() {
   }
   if (status.ok()) {
     status = WriteMapAndReport(
-        result->closed.pose_graph,
+        result->state, result->closed.pose_graph,
         [&](const SubmapsReader& read_submaps) {
           return WriteCloseLoopsReport(ReportRequestOfFlags(task->options),
                                        FLAGS_input, *result, read_submaps);
         },
         &progress);
   }
+  Record(*result, record);
   if (status.ok()) PrintSummary(*result);
   return status;
 }
@@ -80,20 +103,23 @@ absl::Status RunCloseLoops() {
 }  // namespace
 
 Subcommand CloseLoopsSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "close_loops",
       "find the loop closures of a map and optimise it",
-      "--input A.pbstream (--output B.pbstream | --in_place) "
-      "[--closures C.csv] [--report DIR] [--repair]",
+      "A.pbstream (--output B.pbstream | --in_place) [--closures C.csv] "
+      "[--report DIR] [--result R.json] [--repair]",
       "Finds submaps that see the same place by the shape of their free space, "
       "without a pose prior; verifies the matches; keeps a mutually consistent "
       "set; adds it to the pose graph as inter-submap constraints; optimises; "
       "and writes a map that Cartographer's own tools load. Every other record "
       "of the file stays as it is.\n\n"
       "A map without new closures is copied, byte for byte.",
-      {{"input", FileUse::kRead}, {"output", FileUse::kCopyMap}},
+      {{"input", FileUse::kRead},
+       {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."}},
       {{"closures", FileUse::kWriteText},
        {"report", FileUse::kWriteInto, {"index.html"}},
+       {"picture", FileUse::kWriteText},
+       "picture_pixels",
        "in_place",
        "backup",
        "repair",
@@ -102,6 +128,9 @@ Subcommand CloseLoopsSubcommand() {
        "configuration_basename",
        "threads"},
       &RunCloseLoops};
+  subcommand.check_flags = &CheckPictureFlags;
+  subcommand.positional_flags = {"input"};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

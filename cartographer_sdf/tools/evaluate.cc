@@ -65,8 +65,8 @@ struct EvaluatedMap {
 };
 
 absl::StatusOr<EvaluatedMap> ReadEvaluatedMap(const std::string& path,
-                                              const bool with_areas) {
-  Progress progress("read");
+                                              const bool with_areas,
+                                              StageProgress* const progress) {
   EvaluatedMap result;
   SubmapCallback on_submap;
   if (with_areas) {
@@ -76,7 +76,8 @@ absl::StatusOr<EvaluatedMap> ReadEvaluatedMap(const std::string& path,
     };
   }
   absl::StatusOr<MapState> state =
-      ReadMap(path, {on_submap}, progress.Callback());
+      ReadMap(path, {on_submap}, progress->Begin("read"));
+  progress->End();
   if (!state.ok()) return state.status();
   result.pose_graph = std::move(state->pose_graph);
   return result;
@@ -178,13 +179,14 @@ std::string SeriesName(const std::string& path) {
 
 // Pairs of submaps of --input, or of --input and --query.
 absl::StatusOr<PairTruths> PairTruthsOfFlags(const EvaluatedMap& map,
-                                             const Truth& truth) {
+                                             const Truth& truth,
+                                             StageProgress* const progress) {
   PairTruths pairs;
   if (FLAGS_query.empty()) {
     pairs = ComputePairTruths(map.observed, truth);
   } else {
     const absl::StatusOr<EvaluatedMap> query =
-        ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true);
+        ReadEvaluatedMap(FLAGS_query, /*with_areas=*/true, progress);
     if (!query.ok()) return query.status();
     const absl::StatusOr<Truth> query_truth = ReadTruth(FLAGS_query_truth);
     if (!query_truth.ok()) return query_truth.status();
@@ -199,9 +201,11 @@ absl::StatusOr<PairTruths> PairTruthsOfFlags(const EvaluatedMap& map,
 }
 
 absl::Status ScoreMatchesOfFlags(const EvaluatedMap& map, const Truth& truth,
+                                 StageProgress* const progress,
                                  std::vector<Measurement>* const measurements,
                                  std::vector<NamedCurve>* const curves) {
-  const absl::StatusOr<PairTruths> pairs = PairTruthsOfFlags(map, truth);
+  const absl::StatusOr<PairTruths> pairs =
+      PairTruthsOfFlags(map, truth, progress);
   if (!pairs.ok()) return pairs.status();
   const std::vector<std::string> files = SplitPaths(FLAGS_matches);
   std::vector<Measurement> accepted;
@@ -304,7 +308,42 @@ absl::Status CheckFlags() {
   return CheckRandomPairFlags();
 }
 
-absl::Status RunEvaluate() {
+Json MeasurementsJson(const std::vector<Measurement>& measurements) {
+  Json json = Json::array();
+  for (const Measurement& measurement : measurements) {
+    Json quantities = Json::object();
+    for (const auto& [name, number] : measurement.numbers) {
+      quantities[name] = ToJson(number);
+    }
+    json.push_back({{"subject", measurement.subject},
+                    {"quantities", std::move(quantities)}});
+  }
+  return json;
+}
+
+// What the flags ask for, in the order of the flags.
+absl::Status Measure(const EvaluatedMap& map, const Truth& truth,
+                     StageProgress* const progress,
+                     std::vector<Measurement>* const measurements,
+                     std::vector<NamedCurve>* const curves) {
+  absl::Status status;
+  if (!FLAGS_relations.empty()) {
+    status = MeasureRelations(map.pose_graph, measurements);
+  }
+  if (status.ok() && !FLAGS_truth.empty()) {
+    status = MeasureTrajectory(map.pose_graph, truth, measurements);
+  }
+  if (status.ok() && !FLAGS_matches.empty()) {
+    status = ScoreMatchesOfFlags(map, truth, progress, measurements, curves);
+  }
+  if (status.ok() && WantsRandomPairs()) {
+    status = MeasureRandomPairs(truth, progress, measurements, curves);
+  }
+  return status;
+}
+
+absl::Status RunEvaluate(RunRecord* const record) {
+  StageProgress progress(record);
   Truth truth;
   if (!FLAGS_truth.empty()) {
     absl::StatusOr<Truth> read = ReadTruth(FLAGS_truth);
@@ -312,31 +351,19 @@ absl::Status RunEvaluate() {
     truth = *std::move(read);
   }
   const absl::StatusOr<EvaluatedMap> map =
-      ReadEvaluatedMap(FLAGS_input, !FLAGS_matches.empty());
+      ReadEvaluatedMap(FLAGS_input, !FLAGS_matches.empty(), &progress);
   if (!map.ok()) return map.status();
   absl::Status status =
       CheckIsTruthOf(FLAGS_input, map->pose_graph, FLAGS_truth, truth);
   if (!status.ok()) return status;
   std::vector<Measurement> measurements;
   std::vector<NamedCurve> curves;
-  if (!FLAGS_relations.empty()) {
-    status = MeasureRelations(map->pose_graph, &measurements);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_truth.empty()) {
-    status = MeasureTrajectory(map->pose_graph, truth, &measurements);
-    if (!status.ok()) return status;
-  }
-  if (!FLAGS_matches.empty()) {
-    status = ScoreMatchesOfFlags(*map, truth, &measurements, &curves);
-    if (!status.ok()) return status;
-  }
-  if (WantsRandomPairs()) {
-    status = MeasureRandomPairs(truth, &measurements, &curves);
-    if (!status.ok()) return status;
-  }
-  status = WriteResults(measurements, curves);
+  status = Measure(*map, truth, &progress, &measurements, &curves);
+  if (status.ok()) status = WriteResults(measurements, curves);
   if (!status.ok()) return status;
+  record->Count("submaps", map->pose_graph.submap_poses.size());
+  record->Count("nodes", map->pose_graph.nodes.size());
+  record->answer["measurements"] = MeasurementsJson(measurements);
   std::cout << FormatMeasurements(measurements);
   return absl::OkStatus();
 }
@@ -366,7 +393,7 @@ Subcommand Evaluate() {
   Subcommand subcommand{
       "evaluate",
       "measure the errors of a map and of matches",
-      "--input A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
+      "A.pbstream [--relations F] [--truth T.csv [--matches M.csv,...] "
       "[--random_pairs N]]",
       kDescription,
       {{"input", FileUse::kRead}},
@@ -375,7 +402,10 @@ Subcommand Evaluate() {
        {"truth", FileUse::kRead},
        {"matches", FileUse::kReadList},
        {"labels", FileUse::kWriteTextList},
-       {"query", FileUse::kRead},
+       {"query",
+        FileUse::kRead,
+        {},
+        "Second map, that of the queries of --matches."},
        {"query_truth", FileUse::kRead},
        "positive_overlap",
        {"csv", FileUse::kWriteText},
@@ -393,6 +423,7 @@ Subcommand Evaluate() {
        "threads"},
       &RunEvaluate};
   subcommand.check_flags = &CheckFlags;
+  subcommand.positional_flags = {"input"};
   return subcommand;
 }
 

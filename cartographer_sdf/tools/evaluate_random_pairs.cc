@@ -201,6 +201,7 @@ bool WantsRandomPairs() { return FLAGS_random_pairs != 0; }
 absl::Status CheckRandomPairFlags() { return ParseFlags().status(); }
 
 absl::Status MeasureRandomPairs(const Truth& truth,
+                                StageProgress* const progress,
                                 std::vector<Measurement>* const measurements,
                                 std::vector<NamedCurve>* const curves) {
   const absl::StatusOr<RandomPairFlags> flags = ParseFlags();
@@ -208,12 +209,11 @@ absl::Status MeasureRandomPairs(const Truth& truth,
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
   const Executor executor = MakeExecutor(*num_threads);
-  StageProgress progress;
   const absl::StatusOr<RandomPairData> data =
-      ReadData(truth, progress.Begin("read"));
+      ReadData(truth, progress->Begin("read"));
   if (!data.ok()) return data.status();
   const absl::StatusOr<std::vector<Series>> series =
-      AnswerByMethods(*flags, *data, executor, &progress);
+      AnswerByMethods(*flags, *data, executor, progress);
   if (!series.ok()) return series.status();
   for (const double min_overlap : flags->min_overlaps) {
     for (const auto& [name, is_variant, labels] : *series) {

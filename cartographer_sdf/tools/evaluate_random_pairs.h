@@ -13,6 +13,7 @@
 #include "cartographer_sdf/evaluation/precision_recall.h"
 #include "cartographer_sdf/simulation/truth.h"
 #include "cartographer_sdf/tools/measurement.h"
+#include "cartographer_sdf/tools/progress.h"
 
 namespace cartographer_sdf {
 
@@ -22,8 +23,8 @@ namespace cartographer_sdf {
 
 // Adds measurements, and curves with AnswerJudgement::kByPair.
 [[nodiscard]] absl::Status MeasureRandomPairs(
-    const Truth& truth, std::vector<Measurement>* measurements,
-    std::vector<NamedCurve>* curves);
+    const Truth& truth, StageProgress* progress,
+    std::vector<Measurement>* measurements, std::vector<NamedCurve>* curves);
 
 }  // namespace cartographer_sdf
 

@@ -73,7 +73,7 @@ void PrintCounts(const FalsifiedMap& map) {
   }
 }
 
-absl::Status RunFalsify() {
+absl::Status RunFalsify(RunRecord* const record) {
   const absl::StatusOr<Options> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.status();
   if (options->loop_closing.recognition.match.method != Method::kSdf) {
@@ -102,6 +102,7 @@ absl::Status RunFalsify() {
     status = WriteMap(FLAGS_input, FLAGS_output, map->pose_graph);
   }
   if (!status.ok()) return status;
+  record->Count("false_constraints", map->false_constraints.size());
   PrintCounts(*map);
   std::cout << FLAGS_output << "\n";
   return absl::OkStatus();
@@ -113,19 +114,20 @@ Subcommand FalsifySubcommand() {
   Subcommand subcommand{
       "falsify",
       "add wrong constraints to a map, to test audit",
-      "--input A.pbstream --output B.pbstream --wrong_constraints W.csv "
+      "A.pbstream --output B.pbstream --wrong_constraints W.csv "
       "[--kinds K,...] [--pairs N] [--seed N]",
       "Assumes that the map is right, adds wrong inter-submap constraints, and "
       "optimises, so that the map is distorted as Cartographer's would be. "
       "--wrong_constraints lists them: the constraint's index in the file, its "
       "kind, and the number of its pair.",
       {{"input", FileUse::kRead},
-       {"output", FileUse::kCopyMap},
+       {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."},
        {"wrong_constraints", FileUse::kWriteText}},
       {"kinds", "pairs", "seed", "frozen_trajectories",
        "configuration_directory", "configuration_basename", "threads"},
       &RunFalsify};
   subcommand.is_for_developers = true;
+  subcommand.positional_flags = {"input"};
   return subcommand;
 }
 

@@ -158,14 +158,15 @@ struct LoadedMap {
   std::map<SubmapId, OccupancyGrid> grids;
 };
 
-absl::StatusOr<LoadedMap> LoadMap(const std::string& path) {
-  Progress progress("read");
+absl::StatusOr<LoadedMap> LoadMap(const std::string& path,
+                                  StageProgress* const progress) {
   LoadedMap map;
   absl::StatusOr<MapState> state = ReadMap(
       path,
       {[&map](const SubmapId& id, const SubmapSummary&,
               const OccupancyGrid& grid) { map.grids.emplace(id, grid); }},
-      progress.Callback());
+      progress->Begin("read"));
+  progress->End();
   if (!state.ok()) return state.status();
   map.state = *std::move(state);
   return map;
@@ -242,6 +243,7 @@ Picture DrawPairOnMap(const FieldOptions& field, const LoadedMap& map,
 }
 
 absl::Status DrawMatch(const LoopClosingOptions& stages, const LoadedMap& map,
+                       StageProgress* const progress,
                        Pictures* const pictures) {
   const absl::StatusOr<MatchRow> chosen = ChooseMatch();
   if (!chosen.ok()) return chosen.status();
@@ -249,7 +251,7 @@ absl::Status DrawMatch(const LoopClosingOptions& stages, const LoadedMap& map,
   if (!status.ok()) return status;
   std::optional<LoadedMap> other;
   if (!FLAGS_query.empty()) {
-    absl::StatusOr<LoadedMap> loaded = LoadMap(FLAGS_query);
+    absl::StatusOr<LoadedMap> loaded = LoadMap(FLAGS_query, progress);
     if (!loaded.ok()) return loaded.status();
     other = *std::move(loaded);
   }
@@ -294,7 +296,27 @@ absl::StatusOr<DescribedGrid> DescribeSubmap(const PlaceOptions& options,
   return *std::move(best);
 }
 
-absl::Status RunFigures() {
+absl::Status WritePictures(const Pictures& pictures, RunRecord* const record) {
+  std::error_code error;
+  std::filesystem::create_directories(FLAGS_output, error);
+  if (!std::filesystem::is_directory(FLAGS_output, error)) {
+    return absl::UnavailableError(
+        absl::StrCat("cannot make the directory ", FLAGS_output));
+  }
+  Json names = Json::array();
+  for (const auto& [name, content] : pictures) {
+    names.push_back(name);
+    const std::string path = absl::StrCat(FLAGS_output, "/", name);
+    const absl::Status status = WriteWholeFile(path, content);
+    if (!status.ok()) return status;
+    std::cout << path << "\n";
+  }
+  record->Count("pictures", pictures.size());
+  record->answer["pictures"] = std::move(names);
+  return absl::OkStatus();
+}
+
+absl::Status RunFigures(RunRecord* const record) {
   if (FLAGS_figure_pixels < 16 || FLAGS_figure_pixels > 8192) {
     return UsageError("--figure_pixels must be from 16 to 8192");
   }
@@ -308,39 +330,29 @@ absl::Status RunFigures() {
     return UsageError("figures are of method sdf or paper");
   }
   const LoopClosingOptions& stages = method->options.loop_closing;
-  const absl::StatusOr<LoadedMap> map = LoadMap(FLAGS_input);
+  StageProgress progress(record);
+  const absl::StatusOr<LoadedMap> map = LoadMap(FLAGS_input, &progress);
   if (!map.ok()) return map.status();
   const absl::StatusOr<DescribedGrid> submap =
       DescribeSubmap(stages.place, *map);
   if (!submap.ok()) return submap.status();
   Pictures pictures = DrawSubmap(stages.place, *submap);
   if (!FLAGS_matches.empty()) {
-    const absl::Status status = DrawMatch(stages, *map, &pictures);
+    const absl::Status status = DrawMatch(stages, *map, &progress, &pictures);
     if (!status.ok()) return status;
   }
-  std::error_code error;
-  std::filesystem::create_directories(FLAGS_output, error);
-  if (!std::filesystem::is_directory(FLAGS_output, error)) {
-    return absl::UnavailableError(
-        absl::StrCat("cannot make the directory ", FLAGS_output));
-  }
-  for (const auto& [name, content] : pictures) {
-    const std::string path = absl::StrCat(FLAGS_output, "/", name);
-    const absl::Status status = WriteWholeFile(path, content);
-    if (!status.ok()) return status;
-    std::cout << path << "\n";
-  }
-  return absl::OkStatus();
+  return WritePictures(pictures, record);
 }
 
 }  // namespace
 
+// Long: a description, with all flags.
 Subcommand Figures() {
-  return Subcommand{
+  Subcommand subcommand{
       "figures",
       "draw a map's features, and a match",
-      "--input A.pbstream [--query B.pbstream] [--submap 0,12] "
-      "[--matches M.csv] --output DIR",
+      "A.pbstream --output DIR [--query B.pbstream] [--submap 0,12] "
+      "[--matches M.csv]",
       "Draws one submap: its probability grid (grid.png) and distance field "
       "(field.png, with keypoints in keypoints.png, as a surface in "
       "surface.png), the areas within some distances of walls (mask_*.png), "
@@ -353,15 +365,27 @@ Subcommand Figures() {
       "submaps on the map with the paths of the robot (match_map.png; "
       "reference blue, query red, features that agree black) and laid over "
       "each other (match_pair.png).",
-      {{"input", FileUse::kRead}, {"output", FileUse::kWriteInto}},
-      {{"query", FileUse::kRead},
+      {{"input", FileUse::kRead},
+       {"output",
+        FileUse::kWriteInto,
+        {},
+        "Directory to write the pictures to, made if it is missing."}},
+      {{"query",
+        FileUse::kRead,
+        {},
+        "Second map, that of the queries of --matches."},
        "submap",
-       {"matches", FileUse::kRead},
+       {"matches",
+        FileUse::kRead,
+        {},
+        "Matches, as `match` writes them; one of them is drawn."},
        "method",
        "figure_pixels",
        "configuration_directory",
        "configuration_basename"},
       &RunFigures};
+  subcommand.positional_flags = {"input"};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

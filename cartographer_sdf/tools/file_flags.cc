@@ -8,12 +8,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/strip.h"
 #include "cartographer_sdf/file/pending_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/record_stream.h"
@@ -52,18 +56,8 @@ struct UsedFile {
   }
 };
 
-std::vector<SubcommandFlag> AllFlags(const Subcommand& subcommand) {
-  std::vector<SubcommandFlag> flags = subcommand.required_flags;
-  flags.insert(flags.end(), subcommand.optional_flags.begin(),
-               subcommand.optional_flags.end());
-  return flags;
-}
-
 bool HasFlag(const Subcommand& subcommand, const std::string& name) {
-  const std::vector<SubcommandFlag> flags = AllFlags(subcommand);
-  return std::any_of(
-      flags.begin(), flags.end(),
-      [&](const SubcommandFlag& flag) { return flag.name == name; });
+  return subcommand.FindFlag(name) != nullptr;
 }
 
 // The configuration file that is read, if there is one.
@@ -80,7 +74,10 @@ std::optional<std::string> ConfigurationFile() {
 void AppendFiles(const SubcommandFlag& flag, std::vector<UsedFile>* const all) {
   const std::string value =
       gflags::GetCommandLineFlagInfoOrDie(flag.name.c_str()).current_value;
-  if (value.empty() || flag.use == FileUse::kNone) return;
+  if (value.empty() || flag.use == FileUse::kNone ||
+      flag.use == FileUse::kPassList) {
+    return;
+  }
   const std::string name = absl::StrCat("--", flag.name);
   if (flag.use == FileUse::kReadList || flag.use == FileUse::kWriteTextList) {
     for (const std::string& path : SplitPaths(value)) {
@@ -100,7 +97,7 @@ void AppendFiles(const SubcommandFlag& flag, std::vector<UsedFile>* const all) {
 
 std::vector<UsedFile> FilesOfFlags(const Subcommand& subcommand) {
   std::vector<UsedFile> files;
-  for (const SubcommandFlag& flag : AllFlags(subcommand)) {
+  for (const SubcommandFlag& flag : subcommand.AllFlags()) {
     AppendFiles(flag, &files);
   }
   if (HasFlag(subcommand, "configuration_basename")) {
@@ -267,7 +264,24 @@ absl::Status CheckBackup(const Subcommand& subcommand) {
                    ": it exists; move it away, or say --nobackup"));
 }
 
+std::vector<NamedFile> FilesWhere(
+    const Subcommand& subcommand,
+    const std::function<bool(const UsedFile&)>& is_wanted) {
+  std::vector<NamedFile> named;
+  for (const UsedFile& file : FilesOfFlags(subcommand)) {
+    if (!is_wanted(file)) continue;
+    named.push_back(
+        {std::string(absl::StripPrefix(file.flag, "--")), file.path});
+  }
+  return named;
+}
+
 }  // namespace
+
+bool TakesSeveralFiles(const SubcommandFlag& flag) {
+  return flag.use == FileUse::kReadList || flag.use == FileUse::kPassList ||
+         flag.use == FileUse::kWriteTextList;
+}
 
 std::vector<std::string> SplitPaths(const std::string& list) {
   std::vector<std::string> paths;
@@ -286,6 +300,15 @@ std::vector<std::string> SplitPaths(const std::string& list) {
   }
   end_path();
   return paths;
+}
+
+std::string JoinPaths(const std::vector<std::string>& paths) {
+  std::vector<std::string> escaped;
+  for (const std::string& path : paths) {
+    escaped.push_back(
+        absl::StrReplaceAll(path, {{"\\", "\\\\"}, {",", "\\,"}}));
+  }
+  return absl::StrJoin(escaped, ",");
 }
 
 absl::Status ApplyInPlace(const Subcommand& subcommand) {
@@ -317,6 +340,32 @@ absl::Status CheckFiles(const Subcommand& subcommand) {
   }
   status = CheckBackup(subcommand);
   return status.ok() ? CheckSpace(files) : status;
+}
+
+absl::Status CheckResultFile(const Subcommand& subcommand) {
+  const std::vector<UsedFile> files = FilesOfFlags(subcommand);
+  for (const UsedFile& result : files) {
+    if (result.flag != "--result") continue;
+    for (const UsedFile& other : files) {
+      if (other.flag == result.flag) continue;
+      absl::Status status = CheckIsNot(result, other);
+      if (!status.ok()) return status;
+    }
+    return CheckOutput(result);
+  }
+  return absl::OkStatus();
+}
+
+std::vector<NamedFile> FilesThatAreRead(const Subcommand& subcommand) {
+  return FilesWhere(subcommand, [](const UsedFile& file) {
+    return file.use == FileUse::kRead;
+  });
+}
+
+std::vector<NamedFile> FilesThatAreWritten(const Subcommand& subcommand) {
+  return FilesWhere(subcommand, [](const UsedFile& file) {
+    return file.is_output() && file.path != kStandardOutput;
+  });
 }
 
 bool WritesToStandardOutput(const Subcommand& subcommand) {

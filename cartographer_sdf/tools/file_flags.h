@@ -28,6 +28,7 @@ enum class FileUse {
   kNone,       // it names no file
   kRead,       // a file to read
   kReadList,   // several, see SplitPaths
+  kPassList,   // several, which other processes read, or fail to
   kWriteText,  // a table or the like; "-" is the standard output
   kWriteTextList,
   kWriteMap,   // a .pbstream
@@ -40,18 +41,33 @@ enum class FileUse {
 struct SubcommandFlag {
   SubcommandFlag(const char* const name,  // NOLINT: most are no more than that
                  const FileUse use = FileUse::kNone,
-                 std::vector<std::string> written_names = {})
-      : name(name), use(use), written_names(std::move(written_names)) {}
+                 std::vector<std::string> written_names = {},
+                 std::string help = "")
+      : name(name),
+        use(use),
+        written_names(std::move(written_names)),
+        help(std::move(help)) {}
 
   std::string name;
   FileUse use;
   // Of kWriteInto: the names of the files that are written there.
   std::vector<std::string> written_names;
+  // What it means to this subcommand; if empty, the flag's own description.
+  std::string help;
+};
+
+[[nodiscard]] bool TakesSeveralFiles(const SubcommandFlag& flag);
+
+struct NamedFile {
+  std::string flag;  // without dashes
+  std::string path;
 };
 
 // Splits a list of paths at commas. A comma that belongs to a path is written
 // "\,", and a backslash before a comma or a backslash "\\".
 [[nodiscard]] std::vector<std::string> SplitPaths(const std::string& list);
+// The inverse of SplitPaths.
+[[nodiscard]] std::string JoinPaths(const std::vector<std::string>& paths);
 
 // With --in_place, makes the input the output.
 [[nodiscard]] absl::Status ApplyInPlace(const Subcommand& subcommand);
@@ -69,6 +85,17 @@ struct SubcommandFlag {
 // map,
 //   or a map something else; or the backup of --in_place exists.
 [[nodiscard]] absl::Status CheckFiles(const Subcommand& subcommand);
+
+// The same for the file of --result alone, inputs aside: whatever is wrong with
+// others, it may be written.
+[[nodiscard]] absl::Status CheckResultFile(const Subcommand& subcommand);
+
+// The files that the flags name; those that are read include the configuration
+// file that is found, and not the standard output.
+[[nodiscard]] std::vector<NamedFile> FilesThatAreRead(
+    const Subcommand& subcommand);
+[[nodiscard]] std::vector<NamedFile> FilesThatAreWritten(
+    const Subcommand& subcommand);
 
 // Whether an output of the subcommand is the standard output.
 [[nodiscard]] bool WritesToStandardOutput(const Subcommand& subcommand);

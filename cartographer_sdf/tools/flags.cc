@@ -13,32 +13,24 @@
 #include "cartographer_sdf/tools/subcommand.h"
 
 DEFINE_string(input, "", "Map to read, a .pbstream of Cartographer 2D.");
-DEFINE_string(
-    map, "",
-    "relocalize: map to search in, a .pbstream. simulate: floor plan to drive "
-    "through, a PGM with dark walls; if empty, a random office. "
-    "cartographer_sdf_run_log: frozen map to localise in, a .pbstream.");
-DEFINE_string(
-    query, "",
-    "Second map, whose submaps are searched for in --input or --map. In match, "
-    "if empty, the submaps of --input are matched with each other.");
-DEFINE_string(output, "",
-              "File to write (figures: directory). A table can be written to "
-              "the standard output: -.");
+DEFINE_string(map, "", "Map to search in, a .pbstream.");
+DEFINE_string(query, "",
+              "Second map, whose submaps are searched for in the first.");
+DEFINE_string(output, "", "File to write.");
 DEFINE_string(places, "",
-              "File that caches the descriptions of the submaps of --input "
-              "(match) or --map, so that later runs start faster. Written if "
-              "it is missing or was made for another map or other options.");
-DEFINE_string(
-    truth, "",
-    "File of true poses, with lines of kind,trajectory,index,x,y,yaw: read by "
-    "evaluate, written by simulate.");
+              "File that caches the descriptions of the submaps of the map, so "
+              "that later runs start faster. Written if it is missing or was "
+              "made for another map or other options.");
+DEFINE_string(truth, "",
+              "File of true poses, with lines of "
+              "kind,trajectory,index,x,y,yaw [m, rad].");
 DEFINE_string(report, "",
               "Directory for an HTML report (index.html), made if it is "
               "missing. No report if empty.");
 DEFINE_string(configuration_directory, "",
               "Directories of configuration files, separated by commas, "
-              "searched before those installed with the program.");
+              "searched before those installed with the program. "
+              "--configuration_directories is the same.");
 DEFINE_string(configuration_basename, "sdf_global_constraints.lua",
               "Name of the configuration file; it may include others.");
 DEFINE_string(frozen_trajectories, "",

@@ -21,6 +21,8 @@ DECLARE_string(output);
 DECLARE_string(places);
 DECLARE_string(truth);
 DECLARE_string(report);
+DECLARE_string(result);
+DECLARE_string(fail_on);
 DECLARE_string(configuration_directory);
 DECLARE_string(configuration_basename);
 DECLARE_string(frozen_trajectories);

@@ -107,6 +107,15 @@ absl::StatusOr<std::vector<DescribedMap>> DescribeMaps(
   return maps;
 }
 
+std::vector<MatchRow> ToRows(const std::vector<Match>& matches) {
+  std::vector<MatchRow> rows;
+  for (const Match& match : matches) {
+    rows.push_back(ToRow(match, match.verdict == Verdict::kAccepted,
+                         VerdictName(match.verdict)));
+  }
+  return rows;
+}
+
 // Revokes the acceptance of rows whose matches the others do not support.
 void RefuseInconsistent(const ConsistencyOptions& options,
                         const std::vector<DescribedMap>& maps,
@@ -152,12 +161,25 @@ absl::Status WriteTables(const MethodOptions& method,
   return status;
 }
 
-absl::Status RunMatch() {
+// Counts of the map are those of --input.
+void Record(const std::vector<DescribedMap>& maps, const size_t num_pairs,
+            const size_t num_accepted, RunRecord* const record) {
+  RecordMap(maps.front().state, record);
+  record->Count("places", maps.front().places.size());
+  if (maps.size() > 1) record->Count("query_places", maps[1].places.size());
+  record->Count("pairs", num_pairs);
+  record->Count("accepted", num_accepted);
+  if (num_accepted == 0) {
+    record->End(Outcome::kNothing, "no match was accepted");
+  }
+}
+
+absl::Status RunMatch(RunRecord* const record) {
   const absl::StatusOr<MethodOptions> method = OptionsOfFlags();
   if (!method.ok()) return method.status();
   const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
   if (!num_threads.ok()) return num_threads.status();
-  StageProgress progress;
+  StageProgress progress(record);
   const StageCallback on_stage = progress.Callback();
   std::vector<std::pair<std::string, double>> stage_seconds;
   StageClock clock(on_stage, &stage_seconds);
@@ -173,11 +195,7 @@ absl::Status RunMatch() {
                              maps->back().trajectory_places(), executor, &clock)
           : RecognizeWithin(stages.recognition, places, executor, &clock);
   clock.End();
-  std::vector<MatchRow> rows;
-  for (const Match& match : matches) {
-    rows.push_back(ToRow(match, match.verdict == Verdict::kAccepted,
-                         VerdictName(match.verdict)));
-  }
+  std::vector<MatchRow> rows = ToRows(matches);
   if (FLAGS_agree) {
     RefuseInconsistent(stages.closing.consistency, *maps, matches, &rows);
   }
@@ -187,6 +205,7 @@ absl::Status RunMatch() {
   const auto num_accepted =
       std::count_if(rows.begin(), rows.end(),
                     [](const MatchRow& row) { return row.accepted; });
+  Record(*maps, rows.size(), static_cast<size_t>(num_accepted), record);
   for (const DescribedMap& map : *maps) PrintRepair(map.state);
   std::cout << rows.size() << " pairs of submaps with a pose, " << num_accepted
             << " accepted: " << FLAGS_output << "\n";
@@ -195,11 +214,12 @@ absl::Status RunMatch() {
 
 }  // namespace
 
+// Long: a description, with all flags.
 Subcommand MatchSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "match",
       "find submaps of one or two maps that see the same place",
-      "--input A.pbstream [--query B.pbstream] --output M.csv "
+      "A.pbstream [B.pbstream] --output M.csv "
       "[--method sdf|paper|shape_context] [--all_pairs] [--places P.places] "
       "[--alone] [--agree]",
       "Matches the pairs of submaps that an index proposes, and those that "
@@ -215,8 +235,16 @@ Subcommand MatchSubcommand() {
       "With --agree, a match is no longer accepted if matches with more weight "
       "contradict it through the odometry between them, or if it is uncertain "
       "and no other supports it. Its verdict gives the reason.",
-      {{"input", FileUse::kRead}, {"output", FileUse::kWriteText}},
-      {{"query", FileUse::kRead},
+      {{"input", FileUse::kRead},
+       {"output",
+        FileUse::kWriteText,
+        {},
+        "CSV file to write the matches to; -: the standard output."}},
+      {{"query",
+        FileUse::kRead,
+        {},
+        "Second map, whose submaps are searched for in --input. If empty, the "
+        "submaps of --input are matched with each other."},
        "method",
        "all_pairs",
        {"places", FileUse::kCache},
@@ -230,6 +258,8 @@ Subcommand MatchSubcommand() {
        "configuration_basename",
        "threads"},
       &RunMatch};
+  subcommand.positional_flags = {"input", "query"};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

@@ -3,13 +3,13 @@
 
 #include "cartographer_sdf/apps/merge.h"
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/reports.h"
@@ -20,8 +20,8 @@
 
 DEFINE_string(inputs, "",
               "Maps to merge, separated by commas; a comma in a path is "
-              "written \\,.");
-DECLARE_string(result);
+              "written \\,. Maps that are given without a flag are taken as "
+              "they are.");
 
 namespace cartographer_sdf {
 namespace {
@@ -50,13 +50,43 @@ void PrintSummary(const MergingResult& result) {
   PrintStages(result.stage_seconds);
 }
 
+size_t NumMerged(const MergingResult& result) {
+  return static_cast<size_t>(
+      std::count_if(result.sessions.begin(), result.sessions.end(),
+                    [](const MergedSession& session) {
+                      return session.T_merged_session.has_value();
+                    }));
+}
+
+void Record(const MergingResult& result, RunRecord* const record) {
+  record->answer = ToJson(result);
+  const size_t num_left_out = result.sessions.size() - NumMerged(result);
+  RecordMap(result.state, record);
+  record->Count("sessions", result.sessions.size());
+  record->Count("sessions_left_out", num_left_out);
+  record->Count("overlapping_pairs",
+                static_cast<size_t>(result.num_overlapping));
+  record->Count("contradicting_pairs", result.contradictions.size());
+  if (num_left_out > 0) {
+    record->Warn(RunWarning::kSessionsLeftOut,
+                 absl::StrFormat("%d of %d maps are not connected",
+                                 num_left_out, result.sessions.size()));
+  }
+  if (!result.contradictions.empty()) {
+    record->Warn(RunWarning::kContradictions,
+                 absl::StrFormat("%d pairs of submaps contradict each other",
+                                 result.contradictions.size()));
+  }
+  RecordConvergence(result.closed.optimizations, record);
+}
+
 absl::StatusOr<std::vector<MapSource>> InputsOfFlags() {
   std::vector<MapSource> inputs;
   for (const std::string& path : SplitPaths(FLAGS_inputs)) {
     inputs.push_back(SourceOfFlags(path));
   }
   if (inputs.size() < 2) {
-    return UsageError("--inputs needs two maps at least, separated by commas");
+    return UsageError("merge needs two maps at least");
   }
   return inputs;
 }
@@ -66,35 +96,33 @@ absl::StatusOr<std::vector<MapSource>> InputsOfFlags() {
 absl::Status WriteFiles(const Options& options, const MergingResult& result,
                         StageProgress* const progress) {
   absl::Status status;
-  if (!FLAGS_result.empty()) {
-    status = WriteWholeFile(FLAGS_result, FormatJson(ToJson(result)));
-  }
-  if (status.ok() && !FLAGS_report.empty()) {
+  if (!FLAGS_report.empty()) {
     status = WriteMergingReport(ReportRequestOfFlags(options), result,
                                 progress->Begin("report"));
   }
   if (!status.ok()) return status;
   if (!result.refusal.empty()) {
     PrintSummary(result);
-    return absl::FailedPreconditionError(absl::StrCat(
-        "nothing is written to ", FLAGS_output, ": ", result.refusal));
+    return RefusalError(absl::StrCat("nothing is written to ", FLAGS_output,
+                                     ": ", result.refusal));
   }
   return WriteJoinedMap(result.parts, result.closed.pose_graph, FLAGS_output,
                         progress->Begin("write"));
 }
 
-absl::Status RunMerge() {
+absl::Status RunMerge(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("merge");
   if (!task.ok()) return task.status();
   const absl::StatusOr<std::vector<MapSource>> inputs = InputsOfFlags();
   if (!inputs.ok()) return inputs.status();
   const Options& options = task->options;
-  StageProgress progress;
+  StageProgress progress(record);
   const absl::StatusOr<MergingResult> result = MergeSessions(
       options.fold_check, options.localization, options.scan_places,
       options.loop_closing, *inputs, task->frozen_trajectories, task->executor,
       progress.Callback());
   if (!result.ok()) return result.status();
+  Record(*result, record);
   const absl::Status status = WriteFiles(options, *result, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);
@@ -105,10 +133,10 @@ absl::Status RunMerge() {
 }  // namespace
 
 Subcommand MergeSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "merge",
       "merge several maps of the same building into one",
-      "--inputs A.pbstream,B.pbstream,... --output M.pbstream "
+      "A.pbstream B.pbstream... --output M.pbstream "
       "[--result R.json] [--report DIR]",
       "Localises the maps in each other, in any order and without a pose "
       "prior; adds the closures between them and within each; optimises, with "
@@ -118,17 +146,19 @@ Subcommand MergeSubcommand() {
       "nodes, times and sensor data are kept.\n\n"
       "Merges the largest group of connected maps, in the frame of its first, "
       "and reports the other maps. Writes no map if none are connected, or if "
-      "the merged map would be folded.\n\n"
+      "the merged map would be folded: the exit code is then 3.\n\n"
       "--frozen_trajectories refers to the first map.",
-      {{"inputs", FileUse::kReadList}, {"output", FileUse::kCopyMap}},
-      {{"result", FileUse::kWriteText},
-       {"report", FileUse::kWriteInto, {"index.html"}},
+      {{"inputs", FileUse::kReadList},
+       {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."}},
+      {{"report", FileUse::kWriteInto, {"index.html"}},
        "repair",
        "frozen_trajectories",
        "configuration_directory",
        "configuration_basename",
        "threads"},
       &RunMerge};
+  subcommand.positional_flags = {"inputs"};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

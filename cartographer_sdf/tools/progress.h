@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/tools/run_record.h"
 
 namespace cartographer_sdf {
 
@@ -53,21 +54,38 @@ class Progress {
   bool is_drawn_ = false;
 };
 
-// A progress line for one stage after the other.
+// A progress line for one stage after the other, and their durations.
 class StageProgress {
  public:
+  // Nothing is recorded without a record, which must outlive this object.
+  explicit StageProgress(RunRecord* const record = nullptr) : record_(record) {}
+  StageProgress(const StageProgress&) = delete;
+  StageProgress& operator=(const StageProgress&) = delete;
+  ~StageProgress() { End(); }
+
   // Must not outlive this object.
   [[nodiscard]] StageCallback Callback() {
     return [this](const std::string& stage) { return Begin(stage); };
   }
   [[nodiscard]] ProgressCallback Begin(const std::string& stage) {
     // Removes the line of the previous stage first.
-    progress_.reset();
+    End();
+    stage_ = stage;
     progress_ = std::make_unique<Progress>(stage);
     return progress_->Callback();
   }
+  // What follows belongs to no stage.
+  void End() {
+    if (progress_ == nullptr) return;
+    if (record_ != nullptr) {
+      record_->stage_seconds.emplace_back(stage_, progress_->ElapsedSeconds());
+    }
+    progress_.reset();
+  }
 
  private:
+  RunRecord* const record_;
+  std::string stage_;
   std::unique_ptr<Progress> progress_;
 };
 

@@ -13,7 +13,6 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/apps/session.h"
-#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_summary.h"
@@ -23,7 +22,6 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_string(result, "", "JSON file to write the result to. None if empty.");
 DEFINE_double(first_seconds, 0.,
               "Use only this duration of each trajectory of the query, as if "
               "it had just been driven: places are made from its scans. [s]");
@@ -34,7 +32,7 @@ DEFINE_double(start_seconds, 0.,
 DEFINE_int32(
     num_starts, 1,
     "Number of windows of --first_seconds, evenly spaced along the query, to "
-    "localise separately. With this flag, --result is a list.");
+    "localise separately. With this flag, --result has a list of them.");
 
 namespace cartographer_sdf {
 namespace {
@@ -79,9 +77,35 @@ absl::Status CheckFlagsOfRelocalize() {
   return absl::OkStatus();
 }
 
+void RecordStarts(const int num_localized, Json starts,
+                  RunRecord* const record) {
+  record->answer["starts"] = std::move(starts);
+  record->Count("windows", static_cast<size_t>(FLAGS_num_starts));
+  record->Count("localized", static_cast<size_t>(num_localized));
+  if (num_localized == 0) {
+    record->End(Outcome::kRefused, "no window was localized");
+  } else if (num_localized < FLAGS_num_starts) {
+    record->Warn(
+        RunWarning::kWindowsNotLocalized,
+        absl::StrFormat("%d of %d windows were not localized",
+                        FLAGS_num_starts - num_localized, FLAGS_num_starts));
+  }
+}
+
+void RecordAnswer(const Session& map, const Session& query,
+                  const Localization& result, RunRecord* const record) {
+  record->answer = ToJson(result);
+  RecordMap(map.map.state, record);
+  record->Count("places", map.map.places.size());
+  record->Count("query_places", query.map.places.size());
+  record->Count("agreeing", static_cast<size_t>(result.num_agreeing));
+  if (!result.T_map_query) record->End(Outcome::kRefused, result.reason);
+}
+
 // Prints one line and adds one entry to the result for each window.
 absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
-                           StageProgress* const progress) {
+                           StageProgress* const progress,
+                           RunRecord* const record) {
   const Options& options = task.options;
   const absl::StatusOr<DescribedMap> query =
       ReadMapWithScans(SourceOfFlags(FLAGS_query));
@@ -113,25 +137,25 @@ absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
   }
   std::cout << num_localized << " of " << FLAGS_num_starts
             << " windows were localized\n";
-  if (FLAGS_result.empty()) return absl::OkStatus();
-  return WriteWholeFile(FLAGS_result, FormatJson(results));
+  RecordStarts(num_localized, std::move(results), record);
+  return absl::OkStatus();
 }
 
 absl::Status WriteCombinedMap(const MapTask& task, const Session& map,
                               const Session& query, const Localization& result,
                               StageProgress* const progress) {
   if (!result.T_map_query) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("nothing is written to ", FLAGS_output, ": ", query.path,
-                     " was not localized in ", map.path, ": ", result.reason));
+    return RefusalError(absl::StrCat("nothing is written to ", FLAGS_output,
+                                     ": ", query.path, " was not localized in ",
+                                     map.path, ": ", result.reason));
   }
   const absl::StatusOr<MergingResult> merged =
       AttachQuery(task.options.fold_check, task.options.loop_closing, map,
                   query, result, task.executor, progress->Callback());
   if (!merged.ok()) return merged.status();
   if (!merged->refusal.empty()) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "nothing is written to ", FLAGS_output, ": ", merged->refusal));
+    return RefusalError(absl::StrCat("nothing is written to ", FLAGS_output,
+                                     ": ", merged->refusal));
   }
   return WriteJoinedMap(merged->parts, merged->closed.pose_graph, FLAGS_output,
                         progress->Begin("write"));
@@ -163,10 +187,7 @@ absl::Status WriteFiles(const MapTask& task, const Session& map,
                         const Session& query, const Localization& result,
                         StageProgress* const progress) {
   absl::Status status;
-  if (!FLAGS_result.empty()) {
-    status = WriteWholeFile(FLAGS_result, FormatJson(ToJson(result)));
-  }
-  if (status.ok() && !FLAGS_report.empty()) {
+  if (!FLAGS_report.empty()) {
     status =
         WriteRelocalizationReport(ReportRequestOfFlags(task.options), map,
                                   query, result, progress->Begin("report"));
@@ -180,7 +201,7 @@ absl::Status WriteFiles(const MapTask& task, const Session& map,
 // Localises the whole query, or one window of it.
 absl::Status RunOnce(const MapTask& task,
                      const std::optional<TimeWindow>& window, DescribedMap map,
-                     StageProgress* const progress) {
+                     StageProgress* const progress, RunRecord* const record) {
   const Options& options = task.options;
   const absl::StatusOr<Session> query = DescribeSession(
       options.loop_closing, options.scan_places, SourceOfFlags(FLAGS_query),
@@ -196,31 +217,31 @@ absl::Status RunOnce(const MapTask& task,
       LocalizeIn(localization, options.loop_closing, map, query->map,
                  task.executor, progress->Callback());
   const Session map_session{FLAGS_map, std::move(map), {}};
+  RecordAnswer(map_session, *query, result, record);
   const absl::Status status =
       WriteFiles(task, map_session, *query, result, progress);
   if (!status.ok()) return status;
   PrintRepair(map_session.map.state);
   PrintRepair(query->map.state);
   PrintSummary(result);
-  if (!FLAGS_result.empty()) std::cout << FLAGS_result << "\n";
   PrintPaths();
   return absl::OkStatus();
 }
 
-absl::Status RunRelocalize() {
+absl::Status RunRelocalize(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("relocalize");
   if (!task.ok()) return task.status();
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
-  StageProgress progress;
+  StageProgress progress(record);
   absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
       task->options.loop_closing, FLAGS_map, task->executor,
       FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
       progress.Begin("read and describe the map"));
   if (!map.ok()) return map.status();
   return IsGiven("num_starts")
-             ? RunManyStarts(*task, *map, &progress)
-             : RunOnce(*task, *window, *std::move(map), &progress);
+             ? RunManyStarts(*task, *map, &progress, record)
+             : RunOnce(*task, *window, *std::move(map), &progress, record);
 }
 
 }  // namespace
@@ -229,22 +250,23 @@ Subcommand RelocalizeSubcommand() {
   Subcommand subcommand{
       "relocalize",
       "find a map, or the start of a drive, in a map",
-      "--map A.pbstream --query B.pbstream [--first_seconds N] "
+      "A.pbstream B.pbstream [--first_seconds N] "
       "[--result R.json] [--output M.pbstream] [--report DIR]",
       "Searches for every submap of the query in the map, without a pose "
       "prior. The matches vote, and a pose is reported only if it is certain; "
       "otherwise the result is \"localized\": false with the reason, and the "
-      "exit code is still 0. T_map_query is the pose of the query's map frame "
+      "exit code is still 0, or 3 with --fail_on refused. T_map_query is the "
+      "pose of the query's map frame "
       "in the map frame [m, rad].\n\n"
       "With --output, writes both maps as one: the query is attached to the "
-      "map of --map, which does not move, and optimised. It is then an error "
-      "if the query is not localized.",
-      {{"map", FileUse::kRead}, {"query", FileUse::kRead}},
+      "map of --map, which does not move, and optimised. If the query is "
+      "not localized, nothing is written, and the exit code is 3.",
+      {{"map", FileUse::kRead},
+       {"query", FileUse::kRead, {}, "Map to search for, a .pbstream."}},
       {"first_seconds",
        "start_seconds",
        "num_starts",
-       {"result", FileUse::kWriteText},
-       {"output", FileUse::kCopyMap},
+       {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream of both."},
        {"report", FileUse::kWriteInto, {"index.html"}},
        {"places", FileUse::kCache},
        "repair",
@@ -253,6 +275,7 @@ Subcommand RelocalizeSubcommand() {
        "threads"},
       &RunRelocalize};
   subcommand.check_flags = &CheckFlagsOfRelocalize;
+  subcommand.positional_flags = {"map", "query"};
   return subcommand;
 }
 

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -30,10 +31,6 @@
 #include "glog/logging.h"
 
 DEFINE_string(log, "", "Recording to run, a CARMEN log, plain or gzip.");
-DEFINE_string(
-    configuration_directories, "",
-    "Directories of configuration files, separated by commas, searched before "
-    "those installed with this program and with Cartographer.");
 DEFINE_string(sdf_configuration_basename, "sdf_live.lua",
               "Name of the searcher's configuration file. If empty, "
               "Cartographer runs alone.");
@@ -83,34 +80,21 @@ std::optional<T> GivenUnless(const T& absent, const T& value) {
   return value;
 }
 
-absl::StatusOr<std::vector<std::string>> Directories() {
-  std::vector<std::string> directories =
-      SplitPaths(FLAGS_configuration_directories);
-  for (const std::string& directory : directories) {
-    std::error_code ignored;
-    if (!std::filesystem::is_directory(directory, ignored)) {
-      return absl::NotFoundError(absl::StrCat(
-          "--configuration_directories: ", directory, " is no directory"));
-    }
-  }
-  const std::vector<std::string> ours = ConfigurationDirectories();
-  directories.insert(directories.end(), ours.begin(), ours.end());
-  return directories;
-}
-
 absl::StatusOr<LogRunOptions> OptionsOfFlags() {
-  const absl::StatusOr<std::vector<std::string>> directories = Directories();
-  if (!directories.ok()) return directories.status();
+  if (absl::Status status = CheckConfigurationDirectories(); !status.ok()) {
+    return status;
+  }
+  const std::vector<std::string> directories = ConfigurationDirectories();
   LogRunOptions options;
   options.live.enabled = false;
   if (!FLAGS_sdf_configuration_basename.empty()) {
     const absl::StatusOr<LiveOptions> live =
-        LoadLiveOptions(*directories, FLAGS_sdf_configuration_basename);
+        LoadLiveOptions(directories, FLAGS_sdf_configuration_basename);
     if (!live.ok()) return live.status();
     options.live = *live;
   }
   const absl::StatusOr<HostOptions> host =
-      LoadHostOptions(*directories, FLAGS_configuration_basename);
+      LoadHostOptions(directories, FLAGS_configuration_basename);
   if (!host.ok()) return host.status();
   options.host = *host;
   options.map_path = GivenUnless(std::string(), FLAGS_map);
@@ -179,14 +163,35 @@ absl::StatusOr<Recording> RecordingOfFlags() {
   return Cut(*recording, FLAGS_start, duration);
 }
 
+void Record(const LogRunResult& result, RunRecord* const record) {
+  record->Count("scans", static_cast<size_t>(result.num_scans));
+  record->Count("nodes", result.nodes.size());
+  const auto num_in_graph =
+      std::count_if(result.closures.begin(), result.closures.end(),
+                    [](const ClosureRecord& closure) {
+                      return closure.status == ClosureStatus::kInGraph;
+                    });
+  record->Count("closures", static_cast<size_t>(num_in_graph));
+  if (FLAGS_map.empty()) return;
+  const auto num_localized = std::count_if(
+      result.localizations.begin(), result.localizations.end(),
+      [](const LocalizationMoment& moment) { return moment.result.localized; });
+  record->Count("localized", static_cast<size_t>(num_localized));
+  if (num_localized == 0) {
+    record->End(Outcome::kRefused, "the robot was not localized in the map");
+  }
+}
+
 absl::Status RunAndReport(const Recording& recording,
-                          const LogRunOptions& options) {
+                          const LogRunOptions& options,
+                          RunRecord* const record) {
   absl::StatusOr<LogRunResult> result;
   {
-    Progress progress("run");
-    result = RunLog(recording, options, progress.Callback());
+    StageProgress progress(record);
+    result = RunLog(recording, options, progress.Begin("run"));
   }
   if (!result.ok()) return result.status();
+  Record(*result, record);
   if (!FLAGS_report.empty()) {
     if (absl::Status status = WriteRunReport(
             FLAGS_report, FLAGS_log, *options.output_path, options, *result);
@@ -198,24 +203,25 @@ absl::Status RunAndReport(const Recording& recording,
   return absl::OkStatus();
 }
 
-absl::Status RunLogOfFlags() {
+absl::Status RunLogOfFlags(RunRecord* const record) {
   absl::StatusOr<LogRunOptions> options = OptionsOfFlags();
   if (!options.ok()) return options.status();
   const absl::StatusOr<Recording> recording = RecordingOfFlags();
   if (!recording.ok()) return recording.status();
   if (FLAGS_report.empty() || options->output_path) {
-    return RunAndReport(*recording, *options);
+    return RunAndReport(*recording, *options, record);
   }
   RemoveTemporaryMaps();
   options->output_path = TemporaryMapPath(getpid()).string();
-  const absl::Status status = RunAndReport(*recording, *options);
+  const absl::Status status = RunAndReport(*recording, *options, record);
   std::error_code ignored;
   std::filesystem::remove(*options->output_path, ignored);
   return status;
 }
 
+// Long: a description, with all flags.
 Subcommand RunLogCommand() {
-  return Subcommand{
+  Subcommand command{
       "",
       "run a recording through Cartographer and the searcher",
       "--log drive.log.gz --configuration_basename cartographer_mapping.lua "
@@ -227,11 +233,23 @@ Subcommand RunLogCommand() {
       "Prints a summary to the standard output and writes the map to --output. "
       "--report gets index.html to read, and run.json and nodes.csv for "
       "programs.",
-      {{"log", FileUse::kRead}, "configuration_basename"},
-      {"configuration_directories",
+      {{"log", FileUse::kRead},
+       {"configuration_basename",
+        FileUse::kNone,
+        {},
+        "Name of Cartographer's configuration file; it may include others."}},
+      {{"configuration_directory",
+        FileUse::kNone,
+        {},
+        "Directories of configuration files, separated by commas, searched "
+        "before those installed with this program and with Cartographer. "
+        "--configuration_directories is the same."},
        "sdf_configuration_basename",
-       {"map", FileUse::kRead},
-       {"output", FileUse::kWriteMap},
+       {"map",
+        FileUse::kRead,
+        {},
+        "Frozen map to localise in, a .pbstream. Without it, the robot maps."},
+       {"output", FileUse::kWriteMap, {}, "Map to write, a .pbstream."},
        {"report", FileUse::kWriteInto, {"index.html", "run.json", "nodes.csv"}},
        "start",
        "duration",
@@ -242,6 +260,8 @@ Subcommand RunLogCommand() {
       &RunLogOfFlags,
       kProgram,
       &CheckFlagsOfRunLog};
+  command.positional_flags = {"log"};
+  return command;
 }
 
 }  // namespace

@@ -40,9 +40,7 @@ DEFINE_double(
     lidar_field_of_view, 270.,
     "Field of view of the lidar, centred on the direction of travel [deg].");
 DEFINE_double(length, 360., "Length of the drive [m].");
-DEFINE_uint32(seed, 1,
-              "Random seed. In simulate, of the drive, its drift and the "
-              "noise: two sessions in one building differ only in this seed.");
+DEFINE_uint32(seed, 1, "Random seed.");
 
 namespace cartographer_sdf {
 namespace {
@@ -63,7 +61,7 @@ absl::StatusOr<FloorPlan> PlanOfFlags() {
   return MakeOffice(office, FLAGS_plan_seed);
 }
 
-absl::Status WriteMapOfFlags() {
+absl::Status WriteMapOfFlags(RunRecord* const record) {
   SimulationOptions options;
   options.drive.length = FLAGS_length;
   options.lidar.glass_echo = FLAGS_glass_echo;
@@ -71,33 +69,46 @@ absl::Status WriteMapOfFlags() {
   options.lidar.field_of_view = FLAGS_lidar_field_of_view * M_PI / 180.;
   options.people.num_walking = FLAGS_walking_people;
   options.people.num_standing = FLAGS_standing_people;
-  Progress progress("simulate");
+  StageProgress progress(record);
   const absl::StatusOr<FloorPlan> plan = PlanOfFlags();
   if (!plan.ok()) return plan.status();
   const absl::StatusOr<SimulatedMap> map =
-      Simulate(*plan, options, FLAGS_seed, progress.Callback());
+      Simulate(*plan, options, FLAGS_seed, progress.Begin("simulate"));
   if (!map.ok()) return map.status();
+  record->Count("submaps", map->submaps.size());
+  record->Count("nodes", map->nodes.size());
   return WriteSimulatedMap(*map, FLAGS_output, FLAGS_truth);
 }
 
-absl::Status RunSimulate() {
-  const absl::Status status = WriteMapOfFlags();
+absl::Status RunSimulate(RunRecord* const record) {
+  const absl::Status status = WriteMapOfFlags(record);
   if (status.ok()) std::cout << FLAGS_output << "\n" << FLAGS_truth << "\n";
   return status;
 }
 
 }  // namespace
 
+// Long: a description, with all flags.
 Subcommand SimulateSubcommand() {
-  return Subcommand{
+  Subcommand subcommand{
       "simulate",
       "make a map with unclosed loops and its true poses",
-      "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N]",
+      "--output A.pbstream --truth T.csv [--map plan.pgm] [--seed N] "
+      "[--result R.json]",
       "Drives a robot with a ray-cast lidar and drifting odometry through a "
       "building. Writes the map that Cartographer would have saved without "
       "loop closing, and the true poses of its submaps and nodes.",
-      {{"output", FileUse::kWriteMap}, {"truth", FileUse::kWriteText}},
-      {{"map", FileUse::kRead},
+      {{"output", FileUse::kWriteMap, {}, "Map to write, a .pbstream."},
+       {"truth",
+        FileUse::kWriteText,
+        {},
+        "CSV file to write the true poses to, with lines of "
+        "kind,trajectory,index,x,y,yaw [m, rad]."}},
+      {{"map",
+        FileUse::kRead,
+        {},
+        "Floor plan to drive through, a PGM with dark walls. If empty, a "
+        "random office."},
        "map_resolution",
        "plan_seed",
        "plan_width",
@@ -112,8 +123,13 @@ Subcommand SimulateSubcommand() {
        "lidar_range",
        "lidar_field_of_view",
        "length",
-       "seed"},
+       {"seed",
+        FileUse::kNone,
+        {},
+        "Random seed of the drive, its drift and the noise: two sessions in "
+        "one building differ only in this seed."}},
       &RunSimulate};
+  return subcommand;
 }
 
 }  // namespace cartographer_sdf

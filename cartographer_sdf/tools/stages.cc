@@ -7,12 +7,23 @@
 #include <iostream>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/pending_file.h"
+#include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/tools/file_flags.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/map_picture.h"
+#include "cartographer_sdf/tools/subcommand.h"
+
+DEFINE_string(picture, "",
+              "PNG file to draw the map as it becomes to, with the driven "
+              "paths. None if empty.");
+DEFINE_int32(picture_pixels, 1600,
+             "Longer side of --picture at most [pixels]; no pixel is smaller "
+             "than a cell.");
 
 namespace cartographer_sdf {
 namespace {
@@ -30,7 +41,45 @@ absl::Status CommitOutput(RecordWriter* const output) {
   return status;
 }
 
+// Also paints each submap.
+SubmapCallback PaintToo(const PoseGraph& pose_graph, MapPainter* const painter,
+                        const SubmapCallback& on_submap) {
+  return [&pose_graph, painter, on_submap](const SubmapId& id,
+                                           const SubmapSummary& summary,
+                                           OccupancyGrid grid) {
+    const auto pose = pose_graph.submap_poses.find(id);
+    if (pose != pose_graph.submap_poses.end()) {
+      painter->AddSubmap(grid, pose->second);
+    }
+    if (on_submap) on_submap(id, summary, std::move(grid));
+  };
+}
+
+// Reads the map, and prepares `output` where there is one.
+absl::Status ReadAndPrepare(const PoseGraph& pose_graph,
+                            const SubmapCallback& on_submap,
+                            StageProgress* const progress,
+                            std::optional<RecordWriter>* const output) {
+  if (FLAGS_output.empty()) {
+    return ReadMap(SourceOfFlags(FLAGS_input), {on_submap, {}},
+                   progress->Begin("report"))
+        .status();
+  }
+  absl::StatusOr<RecordWriter> map =
+      PrepareMap(SourceOfFlags(FLAGS_input), FLAGS_output, pose_graph,
+                 {on_submap, {}}, progress->Begin("write"));
+  if (map.ok()) output->emplace(*std::move(map));
+  return map.status();
+}
+
 }  // namespace
+
+absl::Status CheckPictureFlags() {
+  if (FLAGS_picture_pixels < 16 || FLAGS_picture_pixels > 8192) {
+    return UsageError("--picture_pixels must be from 16 to 8192");
+  }
+  return absl::OkStatus();
+}
 
 absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
   absl::StatusOr<Options> options = LoadOptionsOfFlags();
@@ -69,30 +118,51 @@ absl::StatusOr<DescribedMap> DescribeMapOfFlags(
 }
 
 absl::Status WriteMapAndReport(
-    const PoseGraph& pose_graph,
+    const MapState& state, const PoseGraph& pose_graph,
     const std::function<absl::Status(const SubmapsReader&)>& write_report,
     StageProgress* const progress) {
   std::optional<RecordWriter> output;
-  const auto read_and_write =
-      [&](const SubmapCallback& on_submap) -> absl::Status {
-    if (FLAGS_output.empty()) {
-      return ReadMap(SourceOfFlags(FLAGS_input), {on_submap, {}},
-                     progress->Begin("report"))
-          .status();
-    }
-    absl::StatusOr<RecordWriter> map =
-        PrepareMap(SourceOfFlags(FLAGS_input), FLAGS_output, pose_graph,
-                   {on_submap, {}}, progress->Begin("write"));
-    if (map.ok()) output.emplace(*std::move(map));
-    return map.status();
+  std::optional<MapPainter> painter;
+  if (!FLAGS_picture.empty()) {
+    painter.emplace(PlaceGrids(state, pose_graph), FLAGS_picture_pixels);
+  }
+  const auto read_and_write = [&](const SubmapCallback& on_submap) {
+    return ReadAndPrepare(
+        pose_graph,
+        painter ? PaintToo(pose_graph, &*painter, on_submap) : on_submap,
+        progress, &output);
   };
   absl::Status status;
   if (!FLAGS_report.empty()) {
     status = write_report(read_and_write);
-  } else if (!FLAGS_output.empty()) {
+  } else if (!FLAGS_output.empty() || painter) {
     status = read_and_write({});
   }
+  if (status.ok() && painter) {
+    status = WriteWholeFile(FLAGS_picture,
+                            PaintWithPaths(*painter, pose_graph).EncodePng());
+  }
   return status.ok() && output ? CommitOutput(&*output) : status;
+}
+
+std::map<std::string, int> CountStatuses(const std::vector<Closure>& closures) {
+  std::map<std::string, int> counts;
+  for (const Closure& closure : closures) {
+    ++counts[ClosureStatusName(closure.status)];
+  }
+  return counts;
+}
+
+void RecordTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
+                       RunRecord* const record) {
+  record->Count("torn_submaps", torn_submaps.size());
+  Json ids = Json::array();
+  for (const auto& [id, tear] : torn_submaps) ids.push_back(ToJson(id));
+  record->answer["torn_submaps"] = std::move(ids);
+  if (torn_submaps.empty()) return;
+  record->Warn(
+      RunWarning::kTornSubmaps,
+      absl::StrFormat("%d submaps are torn inside", torn_submaps.size()));
 }
 
 void PrintStages(const std::vector<std::pair<std::string, double>>& seconds) {

@@ -7,6 +7,7 @@
 #define CARTOGRAPHER_SDF_TOOLS_STAGES_H_
 
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/progress.h"
+#include "cartographer_sdf/tools/run_record.h"
 
 namespace cartographer_sdf {
 
@@ -40,13 +42,23 @@ struct MapTask {
     const Executor& executor, PointClouds point_clouds,
     const ProgressCallback& on_progress);
 
-// Reads --input once, for --output, which gets `pose_graph`, and for --report,
-// which `write_report` makes. Writes the map last, so that its existence shows
-// that everything succeeded.
+// An error if --picture_pixels is no size.
+[[nodiscard]] absl::Status CheckPictureFlags();
+
+// Reads --input once, for --output, which gets `pose_graph`, for --report,
+// which `write_report` makes, and for --picture. Writes the map last, so that
+// its existence shows that everything succeeded. `state` is that of the input.
 [[nodiscard]] absl::Status WriteMapAndReport(
-    const PoseGraph& pose_graph,
+    const MapState& state, const PoseGraph& pose_graph,
     const std::function<absl::Status(const SubmapsReader&)>& write_report,
     StageProgress* progress);
+
+// How many closures have each status, by name.
+[[nodiscard]] std::map<std::string, int> CountStatuses(
+    const std::vector<Closure>& closures);
+
+void RecordTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
+                       RunRecord* record);
 
 // These print the durations of stages, the statuses of closures, a failure of
 // the last optimisation, and the paths of --output and --report.

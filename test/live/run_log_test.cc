@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <sstream>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -99,11 +100,12 @@ class RunLogTest : public ::testing::Test {
 };
 
 TEST_F(RunLogTest, DrivesASimulatedLog) {
-  const std::string log = directory_.Write("drive.log", SimulatedLog());
+  const std::string log = directory_.Write("Büro.log", SimulatedLog());
   const std::string output = directory_.File("out.pbstream");
   const std::string report = directory_.File("report");
   const ProgramResult result =
-      Run(log, {"--output=" + output, "--report=" + report});
+      Run(log, {"--output=" + output, "--report=" + report,
+                "--result=" + directory_.File("result.json")});
   ASSERT_EQ(result.exit_code, 0) << result.error;
   EXPECT_THAT(result.output, HasSubstr("100 scans"));
   const absl::StatusOr<MapState> state = ReadMap(output);
@@ -122,11 +124,35 @@ TEST_F(RunLogTest, DrivesASimulatedLog) {
     EXPECT_LT(error.translation().norm(), 0.1) << scan;
     EXPECT_LT(std::abs(error.rotation()), 0.03) << scan;
   }
-  EXPECT_THAT(directory_.Read("report/run.json"), HasSubstr("\"scans\": 100"));
+  EXPECT_THAT(directory_.Read("report/run.json"),
+              AllOf(HasSubstr("\"scans\": 100"), HasSubstr("/Büro.log\"")));
+  EXPECT_THAT(directory_.Read("result.json"),
+              AllOf(HasSubstr("\"scans\": 100"), HasSubstr("/Büro.log\""),
+                    HasSubstr("\"status\": \"done\"")));
   EXPECT_THAT(
       directory_.Read("report/nodes.csv"),
       HasSubstr("node,time,distance,x,y,yaw,connected,cpu_seconds\n0,"));
   EXPECT_THAT(directory_.Read("report/index.html"), HasSubstr("</html>"));
+}
+
+TEST_F(RunLogTest, HelpNamesFilesThatExist) {
+  const ProgramResult help = RunProgramFile(TEST_RUN_LOG_PROGRAM, {"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  std::istringstream words(help.output);
+  int num_names = 0;
+  for (std::string word; words >> word;) {
+    const size_t end = word.find(".lua");
+    if (end == std::string::npos) continue;
+    word.resize(end + 4);
+    const size_t begin =
+        word.find_last_not_of("abcdefghijklmnopqrstuvwxyz_", end - 1);
+    if (begin != std::string::npos) word.erase(0, begin + 1);
+    EXPECT_TRUE(std::filesystem::exists(
+        absl::StrCat(kTestConfigurationDirectory, "/", word)))
+        << word;
+    ++num_names;
+  }
+  EXPECT_GE(num_names, 2);
 }
 
 TEST_F(RunLogTest, SearcherAloneDoesNotFloodTheLog) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -40,7 +41,8 @@ bool IsInput(const SubcommandFlag& flag) {
 }
 
 bool IsOutput(const SubcommandFlag& flag) {
-  return flag.use != FileUse::kNone && !IsInput(flag);
+  return flag.use != FileUse::kNone && flag.use != FileUse::kPassList &&
+         !IsInput(flag);
 }
 
 bool IsMap(const SubcommandFlag& flag) {
@@ -52,10 +54,7 @@ bool IsText(const SubcommandFlag& flag) {
 }
 
 std::vector<SubcommandFlag> FlagsOf(const Subcommand& subcommand) {
-  std::vector<SubcommandFlag> flags = subcommand.required_flags;
-  flags.insert(flags.end(), subcommand.optional_flags.begin(),
-               subcommand.optional_flags.end());
-  return flags;
+  return subcommand.AllFlags();
 }
 
 class FileFlagsTest : public ::testing::Test {
@@ -124,7 +123,9 @@ TEST_F(FileFlagsTest, EveryFileFlagIsDeclared) {
       "kinds",          "configuration_directory",
       "submap",         "configuration_basename",
       "methods",        "min_overlaps",
-      "max_clearances",
+      "max_clearances", "fail_on",
+      "task",           "program",
+      "map_filestem",   "geojson_origin",
   };
   ForEach([](const SubcommandFlag&) { return true; },
           [&](const Subcommand&, const SubcommandFlag& flag) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
@@ -77,7 +78,10 @@ TEST(ProgramTest, TellsItsVersion) {
   const ProgramResult version = RunTestProgram({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_THAT(version.output,
-              ::testing::MatchesRegex("cartographer_sdf [0-9.]+\n"));
+              ::testing::MatchesRegex(
+                  "cartographer_sdf [0-9.]+ \\(commit [-.0-9a-z]+\\)\n"));
+  EXPECT_EQ(RunTestProgram({"version"}).output, version.output);
+  EXPECT_EQ(RunTestProgram({"info", "--version"}).output, version.output);
 }
 
 TEST(ProgramTest, RefusesWrongUsage) {
@@ -85,9 +89,8 @@ TEST(ProgramTest, RefusesWrongUsage) {
   EXPECT_THAT(Failure({"inof"}, 2), HasSubstr("did you mean 'info'?"));
   EXPECT_THAT(Failure({"frobnicate\n"}, 2), HasSubstr("--help"));
   EXPECT_THAT(Failure({"--input", "x"}, 2), HasSubstr("unknown subcommand"));
-  EXPECT_THAT(Failure({"info"}, 2),
-              AllOf(HasSubstr("--input is missing"),
-                    HasSubstr("info --input A.pbstream")));
+  EXPECT_THAT(Failure({"info"}, 2), AllOf(HasSubstr("--input is missing"),
+                                          HasSubstr("info A.pbstream")));
   EXPECT_THAT(Failure({"info", "--input="}, 2), HasSubstr("is missing"));
   EXPECT_THAT(Failure({"info", "--input"}, 2), HasSubstr("needs a value"));
   EXPECT_THAT(Failure({"info", "--inptu", "x"}, 2),
@@ -97,7 +100,7 @@ TEST(ProgramTest, RefusesWrongUsage) {
   EXPECT_THAT(Failure({"info", "--report=x"}, 2), HasSubstr("unknown"));
   EXPECT_THAT(Failure({"info", "--input", "x", "y"}, 2),
               HasSubstr("unexpected argument 'y'"));
-  EXPECT_THAT(Failure({"info", "--"}, 2), HasSubstr("unexpected argument"));
+  EXPECT_THAT(Failure({"info", "--"}, 2), HasSubstr("--input is missing"));
   EXPECT_THAT(Failure({"info", ""}, 2), HasSubstr("unexpected argument"));
   EXPECT_THAT(Failure({"info", "--flagfile=/etc/passwd"}, 2),
               HasSubstr("unknown flag"));
@@ -124,7 +127,7 @@ TEST(ProgramTest, DescribesRealMaps) {
               AllOf(HasSubstr(path), HasSubstr("trajectories    2\n")));
 }
 
-absl::Status RunNothing() { return absl::OkStatus(); }
+absl::Status RunNothing(RunRecord*) { return absl::OkStatus(); }
 
 TEST(SetFlagsTest, SetsFlags) {
   const gflags::FlagSaver saver;

@@ -3,6 +3,7 @@
 
 // relocalize and merge as a user runs them.
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -30,6 +31,15 @@ std::vector<std::string> NamesOf(const Json& object) {
   return names;
 }
 
+// Without those that every subcommand has.
+std::vector<std::string> NamesOfAnswer(const Json& result) {
+  std::vector<std::string> names = NamesOf(result);
+  const auto last = std::find(names.begin(), names.end(), "peak_memory_bytes");
+  EXPECT_NE(last, names.end());
+  names.erase(names.begin(), last == names.end() ? last : last + 1);
+  return names;
+}
+
 class SessionsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() { offices_ = new testing::TwoOffices; }
@@ -54,10 +64,11 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
   EXPECT_THAT(result.output, StartsWith("localized: x "));
   const Json json = ParseFile("found.json");
   EXPECT_THAT(
-      NamesOf(json),
+      NamesOfAnswer(json),
       ElementsAre("localized", "verdict", "reason", "T_map_query", "score",
                   "runner_up_score", "agreeing", "contradicting", "closures",
                   "placements", "milliseconds"));
+  EXPECT_EQ(json["status"], "done");
   EXPECT_EQ(json["localized"], true);
   EXPECT_EQ(json["verdict"], "localized");
   EXPECT_THAT(NamesOf(json["T_map_query"]), ElementsAre("x", "y", "yaw"));
@@ -111,9 +122,19 @@ TEST_F(SessionsTest, ARefusalIsAnAnswer) {
   // Unless a map was to be made of it.
   arguments.insert(arguments.end(), {"--output", File("refused.pbstream")});
   result = RunTestProgram(arguments);
-  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.exit_code, 3);
   EXPECT_THAT(result.error, HasSubstr("was not localized"));
   EXPECT_FALSE(std::filesystem::exists(File("refused.pbstream")));
+  EXPECT_EQ(ParseFile("refused.json")["status"], "refused");
+  EXPECT_EQ(ParseFile("refused.json")["localized"], false);
+  // Or whoever asked wants to know.
+  arguments.resize(arguments.size() - 2);
+  arguments.insert(arguments.end(), {"--fail_on", "refused"});
+  result = RunTestProgram(arguments);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.output, StartsWith("not localized: "));
+  EXPECT_THAT(result.error, HasSubstr("--fail_on refused: "));
+  EXPECT_EQ(ParseFile("refused.json")["exit_code"], 3);
 }
 
 TEST_F(SessionsTest, TriesManyStarts) {
@@ -125,10 +146,11 @@ TEST_F(SessionsTest, TriesManyStarts) {
   EXPECT_THAT(result.output, HasSubstr(" of 3 windows were localized\n"));
   EXPECT_TRUE(std::filesystem::exists(File("places")));
   const Json json = ParseFile("starts.json");
-  ASSERT_EQ(json.size(), 3u);
-  EXPECT_EQ(json[0]["start_seconds"], 0.);
-  EXPECT_GT(json[1]["start_seconds"], 0.);
-  for (const Json& start : json) {
+  ASSERT_EQ(json["starts"].size(), 3u);
+  EXPECT_EQ(json["counts"]["windows"], 3);
+  EXPECT_EQ(json["starts"][0]["start_seconds"], 0.);
+  EXPECT_GT(json["starts"][1]["start_seconds"], 0.);
+  for (const Json& start : json["starts"]) {
     EXPECT_THAT(NamesOf(start), ElementsAre("start_seconds", "result"));
     EXPECT_TRUE(start["result"]["localized"].is_boolean());
   }
@@ -149,10 +171,12 @@ TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
                         "not connected with the other maps"));
   const Json json = ParseFile("merged.json");
   EXPECT_THAT(
-      NamesOf(json),
+      NamesOfAnswer(json),
       ElementsAre("merged", "reason", "sessions", "pairs", "closures",
                   "overlapping_pairs", "contradicting_pairs", "milliseconds"));
   EXPECT_EQ(json["merged"], true);
+  EXPECT_EQ(json["counts"]["sessions_left_out"], 1);
+  EXPECT_EQ(json["warnings"][0]["code"], "sessions_left_out");
   ASSERT_EQ(json["sessions"].size(), 3u);
   EXPECT_EQ(json["sessions"][0]["path"], offices_->Elsewhere());
   EXPECT_EQ(json["sessions"][0]["merged"], false);
@@ -201,7 +225,10 @@ TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
                "is given twice");
   expect_error({"merge", "--inputs", map + "," + offices_->Elsewhere(),
                 "--output", File("x")},
-               1, "no two of the maps are connected");
+               3, "no two of the maps are connected");
+  // Maps without a flag, in any number.
+  expect_error({"merge", map, offices_->Elsewhere(), "-o", File("x")}, 3,
+               "no two of the maps are connected");
   expect_error(
       {"merge", "--inputs", map + "," + offices_->Evening(), "--output", map},
       1, "it is one of the files that are read");
