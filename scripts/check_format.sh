@@ -24,6 +24,6 @@ if [[ "${program}" == none ]]; then
   exit 1
 fi
 
-mapfile -t files < <(find cartographer_sdf ros test -name '*.h' -o -name '*.cc' | sort)
+mapfile -t files < <(find cartographer_sdf python ros test -name '*.h' -o -name '*.cc' | sort)
 "${program}" "${mode[@]}" --style=file "${files[@]}"
 echo "Format: ${#files[@]} files are right."

@@ -59,6 +59,7 @@ TOP = {
     "tools": [*CORE, *OFFLINE, "live"],
     # Packages of their own, on top of what is installed.
     "ros": ["geometry", "live"],
+    "python": [*CORE, *OFFLINE],
 }
 ALLOWED = {**CORE, **OFFLINE, **TOP}
 
@@ -73,7 +74,7 @@ SPDX_SUFFIXES = (".h", ".cc", ".proto", ".py", ".sh", ".lua", ".cmake",
                  ".cmake.in")
 SPDX_NAMES = ("CMakeLists.txt", ".ci/run")
 CHECKED = ("CMakeLists.txt", ".ci", "cartographer_sdf", "cmake",
-           "configuration_files", "proto", "ros", "scripts", "test")
+           "configuration_files", "proto", "python", "ros", "scripts", "test")
 
 INCLUDE = re.compile(r"^\s*#\s*include\b\s*(.*)$")
 SPELLED_INCLUDE = re.compile(r'^(?:"([^"]+)"|<([^>]+)>)')
@@ -102,7 +103,7 @@ def target_folder(header):
 def check_own_include(path, header):
     """A violation of the arrows by an include of one of our headers, or None."""
     parts = path.split("/")
-    folder = "ros" if parts[0] == "ros" else parts[1]
+    folder = parts[0] if parts[0] in ("ros", "python") else parts[1]
     target = target_folder(header)
     if parts[0] == "test":
         # Tests of the core link the core alone.
@@ -291,6 +292,11 @@ SAMPLES = [
     ("cartographer_sdf/field/once.h", CPP_SPDX + "#pragma once\n", "include guard"),
     ("cartographer_sdf/utils/a.cc", source("<vector>"), "in none of the folders"),
     ("cartographer_sdf/a.cc", source("<vector>"), "in none of the folders"),
+    ("python/a.cc",
+     source("cartographer_sdf/apps/a.h", "cartographer_sdf/grid/a.h", "python/b.h",
+            "pybind11/stl.h"), None),
+    ("python/b.cc", source("cartographer_sdf/live/a.h"), "python/ must not include"),
+    ("python/c.cc", source("cartographer_sdf/tools/a.h"), "python/ must not include"),
     ("test/field/a_test.cc",
      source("cartographer_sdf/feature/a.h", "test/testing/a.h", "gtest/gtest.h"), None),
     ("test/field/b_test.cc", source("cartographer_sdf/pbstream/map_file.h"), "a test of the core"),

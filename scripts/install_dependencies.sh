@@ -9,9 +9,13 @@ set -euo pipefail
 
 usage() {
   cat <<END
-usage: scripts/install_dependencies.sh [--development] [--ros]
-  --development  also what the static checks (clang-format, clang-tidy) and
-                 learning the score's weights (numpy) need
+usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [--ros]
+  --development  also what the static checks (clang-format, clang-tidy),
+                 learning the score's weights (numpy), checking results against
+                 their schema (jsonschema) and batch (GNU parallel) need
+  --python       also what the Python module and its example need
+  --packages     also what scripts/make_packages.sh and test_packages.sh need,
+                 with the Python module
   --ros          also what the nodes for ROS 1 and scripts/test_ros.sh need,
                  besides an installed cartographer_ros
 END
@@ -27,7 +31,10 @@ PACKAGES=(
   # Tests and benchmarks.
   libgtest-dev libgmock-dev libbenchmark-dev
 )
-DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy)
+DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy python3-jsonschema parallel)
+PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy python3-matplotlib)
+# dpkg-shlibdeps, what it asks about files, and a bare root to install in.
+PACKAGING_PACKAGES=(pybind11-dev python3-dev python3-numpy dpkg-dev file debootstrap)
 ROS_PACKAGES=(
   # To build.
   catkin ros-message-generation ros-message-runtime libroscpp-dev
@@ -55,6 +62,8 @@ fail() {
 while (($# > 0)); do
   case "$1" in
     --development) PACKAGES+=("${DEVELOPMENT_PACKAGES[@]}") ;;
+    --python) PACKAGES+=("${PYTHON_PACKAGES[@]}") ;;
+    --packages) PACKAGES+=("${PACKAGING_PACKAGES[@]}") ;;
     --ros) PACKAGES+=("${ROS_PACKAGES[@]}") ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;

@@ -56,7 +56,18 @@ std::vector<std::string> GivenDirectories() {
 
 std::vector<std::string> ConfigurationDirectories() {
   std::vector<std::string> directories = GivenDirectories();
-  directories.push_back(CARTOGRAPHER_SDF_SOURCE_CONFIGURATION_DIRECTORY);
+  // Empty in packages, which are made elsewhere.
+  const std::string source = CARTOGRAPHER_SDF_SOURCE_CONFIGURATION_DIRECTORY;
+  if (!source.empty()) directories.push_back(source);
+  std::error_code error;
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    // Wherever an installation was moved to.
+    directories.push_back((program.parent_path().parent_path() /
+                           CARTOGRAPHER_SDF_CONFIGURATION_BELOW_PREFIX)
+                              .string());
+  }
   directories.push_back(CARTOGRAPHER_SDF_INSTALLED_CONFIGURATION_DIRECTORY);
   return directories;
 }

@@ -32,8 +32,8 @@ DECLARE_int32(threads);
 namespace cartographer_sdf {
 
 // Directories to search for configuration files: first those of
-// --configuration_directory, then those where the program was built and
-// installed.
+// --configuration_directory, then those where the program was built, is, and
+// was installed.
 [[nodiscard]] std::vector<std::string> ConfigurationDirectories();
 
 // An error if a directory of --configuration_directory does not exist.

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// The parts of the Python module. What they offer is described where users look
+// for it, in cartographer_sdf/__init__.pyi.
+
+#ifndef PYTHON_BINDINGS_H_
+#define PYTHON_BINDINGS_H_
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "absl/status/statusor.h"
+#include "cartographer_sdf/execution/executor.h"
+#include "pybind11/pybind11.h"
+
+namespace cartographer_sdf {
+
+// cartographer_sdf.Error in Python: the sentence of a status.
+class StatusException : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+inline void ThrowUnlessOk(const absl::Status& status) {
+  if (!status.ok()) throw StatusException(std::string(status.message()));
+}
+
+template <typename T>
+T ValueOrThrow(absl::StatusOr<T> value) {
+  ThrowUnlessOk(value.status());
+  return *std::move(value);
+}
+
+// 0: as many threads as the machine supports. ValueError for other nonsense.
+Executor ExecutorOf(int threads);
+
+void BindGeometry(pybind11::module_* module);
+void BindOptions(pybind11::module_* module);
+void BindMaps(pybind11::module_* module);
+void BindPlaces(pybind11::module_* module);
+void BindTasks(pybind11::module_* module);
+
+}  // namespace cartographer_sdf
+
+#endif  // PYTHON_BINDINGS_H_
