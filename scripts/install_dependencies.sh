@@ -11,9 +11,9 @@ usage() {
   cat <<END
 usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [--ros]
   --development  also what the static checks (clang-format, clang-tidy),
-                 learning the score's weights (numpy), checking results against
-                 their schema (jsonschema) and batch (GNU parallel) need
-  --python       also what the Python module and its example need
+                 learning the score's weights (numpy), and the pictures of the
+                 Python example (matplotlib) need
+  --python       also what the Python module needs
   --packages     also what scripts/make_packages.sh and test_packages.sh need,
                  with the Python module
   --ros          also what the nodes for ROS 1 and scripts/test_ros.sh need,
@@ -29,10 +29,10 @@ PACKAGES=(
   libprotobuf-dev zlib1g-dev liblua5.2-dev libcairo2-dev
   nlohmann-json3-dev
   # Tests and benchmarks.
-  libgtest-dev libgmock-dev libbenchmark-dev
+  libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema parallel
 )
-DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy python3-jsonschema parallel)
-PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy python3-matplotlib)
+DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy python3-matplotlib)
+PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
 # dpkg-shlibdeps, what it asks about files, and a bare root to install in.
 PACKAGING_PACKAGES=(pybind11-dev python3-dev python3-numpy dpkg-dev file debootstrap)
 ROS_PACKAGES=(

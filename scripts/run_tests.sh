@@ -39,6 +39,7 @@ if "${sanitize}" && "${benchmark}"; then
 fi
 
 options=(-DCARTOGRAPHER_SDF_UNITY_BUILD=ON)
+dependencies=()
 if "${sanitize}"; then
   BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build-sanitize}"
   # No -Werror: the sanitizers make the compiler see ghosts in Eigen. The real
@@ -56,7 +57,8 @@ if "${sanitize}"; then
   export UBSAN_OPTIONS="${UBSAN_OPTIONS:-halt_on_error=1:print_stacktrace=1}"
 else
   BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
-  options+=(-DCARTOGRAPHER_SDF_WARNINGS_AS_ERRORS=ON)
+  options+=(-DCARTOGRAPHER_SDF_WARNINGS_AS_ERRORS=ON -DCARTOGRAPHER_SDF_BUILD_PYTHON=ON)
+  dependencies+=(--python)
 fi
 "${benchmark}" && options+=(-DCARTOGRAPHER_SDF_BUILD_BENCHMARKS=ON)
 # Each test is a program of its own, so links add up.
@@ -69,7 +71,7 @@ done
 # An existing directory keeps the generator it was made with.
 [[ -f "${BUILD_DIR}/CMakeCache.txt" ]] || options+=(-G Ninja)
 
-"${SOURCE_DIR}/scripts/install_dependencies.sh"
+"${SOURCE_DIR}/scripts/install_dependencies.sh" "${dependencies[@]}"
 cmake -S "${SOURCE_DIR}" -B "${BUILD_DIR}" -DCARTOGRAPHER_SDF_BUILD_TESTS=ON "${options[@]}"
 cmake --build "${BUILD_DIR}" --parallel "${JOBS}"
 

@@ -77,7 +77,8 @@ absl::StatusOr<MethodOptions> OptionsOfFlags() {
 absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
                                       const std::string& path,
                                       const Executor& executor,
-                                      StageClock* const clock) {
+                                      StageClock* const clock,
+                                      RunRecord* const record) {
   const ProgressCallback on_progress = clock->Begin("read and describe");
   if (method.describes_clouds) {
     return DescribeMapByShapeContexts(method.shape_context, path, executor,
@@ -87,7 +88,7 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
   // --places applies to the map, not to the query.
   if (path == FLAGS_input) {
     return DescribeMapOfFlags(stages, path, executor, PointClouds::kDrop,
-                              on_progress);
+                              on_progress, record);
   }
   return DescribeMap(stages.place, stages.recognition.match,
                      SourceOfFlags(path), executor, on_progress);
@@ -96,11 +97,12 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
 // The map and, if there is one, the query.
 absl::StatusOr<std::vector<DescribedMap>> DescribeMaps(
     const MethodOptions& method, const Executor& executor,
-    StageClock* const clock) {
+    StageClock* const clock, RunRecord* const record) {
   std::vector<DescribedMap> maps;
   for (const std::string& path : {FLAGS_input, FLAGS_query}) {
     if (path.empty()) continue;
-    absl::StatusOr<DescribedMap> map = Describe(method, path, executor, clock);
+    absl::StatusOr<DescribedMap> map =
+        Describe(method, path, executor, clock, record);
     if (!map.ok()) return map.status();
     maps.push_back(*std::move(map));
   }
@@ -185,7 +187,7 @@ absl::Status RunMatch(RunRecord* const record) {
   StageClock clock(on_stage, &stage_seconds);
   const Executor executor = MakeExecutor(*num_threads);
   const absl::StatusOr<std::vector<DescribedMap>> maps =
-      DescribeMaps(*method, executor, &clock);
+      DescribeMaps(*method, executor, &clock, record);
   if (!maps.ok()) return maps.status();
   const LoopClosingOptions& stages = method->options.loop_closing;
   const TrajectoryPlaces places = maps->front().trajectory_places();

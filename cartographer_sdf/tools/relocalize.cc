@@ -237,7 +237,7 @@ absl::Status RunRelocalize(RunRecord* const record) {
   absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
       task->options.loop_closing, FLAGS_map, task->executor,
       FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
-      progress.Begin("read and describe the map"));
+      progress.Begin("read and describe the map"), record);
   if (!map.ok()) return map.status();
   return IsGiven("num_starts")
              ? RunManyStarts(*task, *map, &progress, record)

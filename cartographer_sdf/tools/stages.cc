@@ -101,7 +101,7 @@ absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
 absl::StatusOr<DescribedMap> DescribeMapOfFlags(
     const LoopClosingOptions& options, const std::string& path,
     const Executor& executor, const PointClouds point_clouds,
-    const ProgressCallback& on_progress) {
+    const ProgressCallback& on_progress, RunRecord* const record) {
   const MatchOptions& match = options.recognition.match;
   if (FLAGS_places.empty()) {
     return DescribeMap(options.place, match, SourceOfFlags(path), executor,
@@ -113,6 +113,7 @@ absl::StatusOr<DescribedMap> DescribeMapOfFlags(
   if (!remembered.ok()) return remembered.status();
   if (!remembered->complaint.empty()) {
     std::cerr << "--places: " << remembered->complaint << "\n";
+    record->Warn(RunWarning::kPlacesNotUsed, remembered->complaint);
   }
   return std::move(remembered->map);
 }

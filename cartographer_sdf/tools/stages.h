@@ -36,11 +36,12 @@ struct MapTask {
     const std::string& subcommand);
 
 // Returns the map with its places. With --places, reads them from that file if
-// it fits; otherwise describes them and writes the file.
+// it fits; otherwise describes them, writes the file, and records a warning if
+// there was one.
 [[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapOfFlags(
     const LoopClosingOptions& options, const std::string& path,
     const Executor& executor, PointClouds point_clouds,
-    const ProgressCallback& on_progress);
+    const ProgressCallback& on_progress, RunRecord* record);
 
 // An error if --picture_pixels is no size.
 [[nodiscard]] absl::Status CheckPictureFlags();
