@@ -39,7 +39,7 @@ void PrintSummary(const Audit& audit) {
   PrintPaths();
 }
 
-void Record(const Audit& audit, RunRecord* const record) {
+void RecordAudit(const Audit& audit, RunRecord* const record) {
   RecordMap(audit.state, record);
   record->Count("inter_submap_constraints", audit.constraints.size());
   record->Count("groups", audit.groups.size());
@@ -85,7 +85,7 @@ absl::Status RunAudit(RunRecord* const record) {
         },
         &progress);
   }
-  Record(*audit, record);
+  RecordAudit(*audit, record);
   if (status.ok()) PrintSummary(*audit);
   return status;
 }

@@ -68,7 +68,7 @@ std::string CountOf(const BatchRow& row, const std::string& name) {
   return "";
 }
 
-std::string Picture(const BatchRow& row) {
+std::string PictureMarkup(const BatchRow& row) {
   std::ifstream file(row.job.picture, std::ios::binary);
   const std::string png{std::istreambuf_iterator<char>(file),
                         std::istreambuf_iterator<char>()};
@@ -77,10 +77,10 @@ std::string Picture(const BatchRow& row) {
                       absl::Base64Escape(png), "\"/>");
 }
 
-std::string Figure(const BatchRow& row) {
-  std::string text = absl::StrCat("<figure>", Picture(row), "<figcaption><b>",
-                                  EscapeMarkup(row.job.name), "</b> ",
-                                  EscapeMarkup(row.status));
+std::string FigureMarkup(const BatchRow& row) {
+  std::string text = absl::StrCat("<figure>", PictureMarkup(row),
+                                  "<figcaption><b>", EscapeMarkup(row.job.name),
+                                  "</b> ", EscapeMarkup(row.status));
   if (!row.warnings.empty()) {
     absl::StrAppend(&text, " <span class=\"warning\">",
                     EscapeMarkup(absl::StrJoin(row.warnings, ", ")), "</span>");
@@ -175,7 +175,7 @@ std::string FormatSummaryPage(const std::vector<BatchRow>& rows) {
   size_t num_failed = 0;
   for (const BatchRow& row : rows) {
     if (!row.has_failed()) {
-      maps += Figure(row);
+      maps += FigureMarkup(row);
       continue;
     }
     ++num_failed;

@@ -33,7 +33,7 @@ absl::Status WriteClosures(const std::string& path,
   return WriteMatches(path, rows);
 }
 
-void Record(const LoopClosingResult& result, RunRecord* const record) {
+void RecordClosing(const LoopClosingResult& result, RunRecord* const record) {
   RecordMap(result.state, record);
   record->Count("places", result.num_places);
   record->Count("matches", result.num_matches);
@@ -95,7 +95,7 @@ absl::Status RunCloseLoops(RunRecord* const record) {
         },
         &progress);
   }
-  Record(*result, record);
+  RecordClosing(*result, record);
   if (status.ok()) PrintSummary(*result);
   return status;
 }

@@ -322,10 +322,10 @@ Json MeasurementsJson(const std::vector<Measurement>& measurements) {
 }
 
 // What the flags ask for, in the order of the flags.
-absl::Status Measure(const EvaluatedMap& map, const Truth& truth,
-                     StageProgress* const progress,
-                     std::vector<Measurement>* const measurements,
-                     std::vector<NamedCurve>* const curves) {
+absl::Status MeasureByFlags(const EvaluatedMap& map, const Truth& truth,
+                            StageProgress* const progress,
+                            std::vector<Measurement>* const measurements,
+                            std::vector<NamedCurve>* const curves) {
   absl::Status status;
   if (!FLAGS_relations.empty()) {
     status = MeasureRelations(map.pose_graph, measurements);
@@ -358,7 +358,7 @@ absl::Status RunEvaluate(RunRecord* const record) {
   if (!status.ok()) return status;
   std::vector<Measurement> measurements;
   std::vector<NamedCurve> curves;
-  status = Measure(*map, truth, &progress, &measurements, &curves);
+  status = MeasureByFlags(*map, truth, &progress, &measurements, &curves);
   if (status.ok()) status = WriteResults(measurements, curves);
   if (!status.ok()) return status;
   record->Count("submaps", map->pose_graph.submap_poses.size());

@@ -160,8 +160,8 @@ absl::Status WriteRosMap(const MapPainter& painter, RunRecord* const record) {
   return status.ok() ? WriteWholeFile(FLAGS_yaml, map.yaml) : status;
 }
 
-absl::Status WriteFiles(const MapState& state, const Painters& painters,
-                        RunRecord* const record) {
+absl::Status WriteExports(const MapState& state, const Painters& painters,
+                          RunRecord* const record) {
   absl::Status status;
   if (painters.ros_map) status = WriteRosMap(*painters.ros_map, record);
   if (status.ok() && painters.picture) {
@@ -187,7 +187,7 @@ absl::Status RunExport(RunRecord* const record) {
   absl::StatusOr<Painters> painters = PaintersOfFlags(*state);
   if (!painters.ok()) return painters.status();
   absl::Status status = Paint(*state, progress.Begin("paint"), &*painters);
-  if (status.ok()) status = WriteFiles(*state, *painters, record);
+  if (status.ok()) status = WriteExports(*state, *painters, record);
   if (!status.ok()) return status;
   PrintRepair(*state);
   for (const std::string& path :

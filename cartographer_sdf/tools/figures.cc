@@ -13,10 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_split.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/report/feature_pictures.h"
 #include "cartographer_sdf/report/match_table.h"
@@ -25,13 +23,11 @@
 #include "cartographer_sdf/tools/method_options.h"
 #include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/subcommand.h"
+#include "cartographer_sdf/tools/submap_flag.h"
 
 DECLARE_string(matches);
 DECLARE_string(method);
 
-DEFINE_string(submap, "",
-              "Submap to draw, as trajectory,index; if empty, the first of "
-              "those with the most features.");
 DEFINE_int32(figure_pixels, 700, "Longer side of the pictures [pixels].");
 
 namespace cartographer_sdf {
@@ -41,16 +37,9 @@ constexpr double kMaskClearances[] = {2., 1.5, 1., 0.5};  // [m], Fig. 6
 
 absl::StatusOr<std::optional<SubmapId>> SubmapOfFlags() {
   if (FLAGS_submap.empty()) return std::nullopt;
-  const std::vector<std::string> parts = absl::StrSplit(FLAGS_submap, ',');
-  SubmapId id;
-  if (parts.size() != 2 || !absl::SimpleAtoi(parts[0], &id.trajectory) ||
-      !absl::SimpleAtoi(parts[1], &id.index) || id.trajectory < 0 ||
-      id.index < 0) {
-    return UsageError(
-        absl::StrCat("--submap must be 2 numbers, separated by commas, it is ",
-                     FLAGS_submap));
-  }
-  return id;
+  const absl::StatusOr<SubmapId> id = ParseSubmap("submap", FLAGS_submap);
+  if (!id.ok()) return id.status();
+  return *id;
 }
 
 struct DescribedGrid {

@@ -60,7 +60,7 @@ Json TrajectoriesJson(const MapState& state) {
   return json;
 }
 
-void Record(const MapState& state, RunRecord* const record) {
+void RecordContents(const MapState& state, RunRecord* const record) {
   record->Count("trajectories", state.trajectories.size());
   record->Count("submaps", state.pose_graph.submap_poses.size());
   record->Count("nodes", state.pose_graph.nodes.size());
@@ -87,7 +87,7 @@ absl::Status RunInfo(RunRecord* const record) {
   const absl::StatusOr<MapState> state = ReadMap(
       {FLAGS_input, MissingRecords::kKeep}, visitor, progress.Begin("read"));
   if (!state.ok()) return state.status();
-  Record(*state, record);
+  RecordContents(*state, record);
   std::string text = DescribeMap(FLAGS_input, *state);
   if (FLAGS_torn_submaps) {
     const absl::StatusOr<std::map<SubmapId, Tear>> torn_submaps =

@@ -164,8 +164,9 @@ absl::Status WriteTables(const MethodOptions& method,
 }
 
 // Counts of the map are those of --input.
-void Record(const std::vector<DescribedMap>& maps, const size_t num_pairs,
-            const size_t num_accepted, RunRecord* const record) {
+void RecordMatches(const std::vector<DescribedMap>& maps,
+                   const size_t num_pairs, const size_t num_accepted,
+                   RunRecord* const record) {
   RecordMap(maps.front().state, record);
   record->Count("places", maps.front().places.size());
   if (maps.size() > 1) record->Count("query_places", maps[1].places.size());
@@ -207,7 +208,7 @@ absl::Status RunMatch(RunRecord* const record) {
   const auto num_accepted =
       std::count_if(rows.begin(), rows.end(),
                     [](const MatchRow& row) { return row.accepted; });
-  Record(*maps, rows.size(), static_cast<size_t>(num_accepted), record);
+  RecordMatches(*maps, rows.size(), static_cast<size_t>(num_accepted), record);
   for (const DescribedMap& map : *maps) PrintRepair(map.state);
   std::cout << rows.size() << " pairs of submaps with a pose, " << num_accepted
             << " accepted: " << FLAGS_output << "\n";

@@ -58,7 +58,7 @@ size_t NumMerged(const MergingResult& result) {
                     }));
 }
 
-void Record(const MergingResult& result, RunRecord* const record) {
+void RecordMerging(const MergingResult& result, RunRecord* const record) {
   record->answer = ToJson(result);
   const size_t num_left_out = result.sessions.size() - NumMerged(result);
   RecordMap(result.state, record);
@@ -122,7 +122,7 @@ absl::Status RunMerge(RunRecord* const record) {
       options.loop_closing, *inputs, task->frozen_trajectories, task->executor,
       progress.Callback());
   if (!result.ok()) return result.status();
-  Record(*result, record);
+  RecordMerging(*result, record);
   const absl::Status status = WriteFiles(options, *result, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);

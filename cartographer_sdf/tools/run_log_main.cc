@@ -163,7 +163,7 @@ absl::StatusOr<Recording> RecordingOfFlags() {
   return Cut(*recording, FLAGS_start, duration);
 }
 
-void Record(const LogRunResult& result, RunRecord* const record) {
+void RecordRun(const LogRunResult& result, RunRecord* const record) {
   record->Count("scans", static_cast<size_t>(result.num_scans));
   record->Count("nodes", result.nodes.size());
   const auto num_in_graph =
@@ -191,7 +191,7 @@ absl::Status RunAndReport(const Recording& recording,
     result = RunLog(recording, options, progress.Begin("run"));
   }
   if (!result.ok()) return result.status();
-  Record(*result, record);
+  RecordRun(*result, record);
   if (!FLAGS_report.empty()) {
     if (absl::Status status = WriteRunReport(
             FLAGS_report, FLAGS_log, *options.output_path, options, *result);

@@ -31,6 +31,7 @@ Subcommand ExportSubcommand();
 Subcommand FalsifySubcommand();
 Subcommand Figures();
 Subcommand Info();
+Subcommand InspectSubcommand();
 Subcommand MatchSubcommand();
 Subcommand MergeSubcommand();
 Subcommand RelocalizeSubcommand();
@@ -45,7 +46,8 @@ bool IsHelp(const std::string& argument) {
   return argument == "--help" || argument == "-help" || argument == "-h";
 }
 
-bool Has(const std::vector<std::string>& arguments, const char* const text) {
+bool HasArgument(const std::vector<std::string>& arguments,
+                 const char* const text) {
   return std::find(arguments.begin(), arguments.end(), text) != arguments.end();
 }
 
@@ -212,10 +214,19 @@ const SubcommandFlag* Subcommand::FindFlag(const std::string& flag) const {
 }
 
 std::vector<Subcommand> AllSubcommands() {
-  return {CloseLoopsSubcommand(), MatchSubcommand(),   RelocalizeSubcommand(),
-          MergeSubcommand(),      AuditSubcommand(),   BatchSubcommand(),
-          ExportSubcommand(),     Evaluate(),          Figures(),
-          SimulateSubcommand(),   FalsifySubcommand(), Info()};
+  return {CloseLoopsSubcommand(),
+          MatchSubcommand(),
+          RelocalizeSubcommand(),
+          MergeSubcommand(),
+          AuditSubcommand(),
+          BatchSubcommand(),
+          ExportSubcommand(),
+          Evaluate(),
+          Figures(),
+          InspectSubcommand(),
+          SimulateSubcommand(),
+          FalsifySubcommand(),
+          Info()};
 }
 
 int RunSubcommand(const Subcommand& subcommand,
@@ -224,11 +235,11 @@ int RunSubcommand(const Subcommand& subcommand,
     std::cout << HelpText(subcommand);
     return 0;
   }
-  if (Has(arguments, "--man")) {
+  if (HasArgument(arguments, "--man")) {
     std::cout << ManPage(subcommand);
     return 0;
   }
-  if (Has(arguments, "--version")) {
+  if (HasArgument(arguments, "--version")) {
     std::cout << VersionLine(subcommand.program) << "\n";
     return 0;
   }

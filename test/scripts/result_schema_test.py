@@ -94,11 +94,18 @@ class ResultSchemaTest(unittest.TestCase):
         self.check("done", 0, "falsify", closed, "-o", self.file("false.pbstream"),
                    "--wrong_constraints", self.file("wrong.csv"), "--kinds", "random")
         self.check("done", 0, "info", a, "--torn_submaps")
+        content = self.check("done", 0, "inspect", a, b, "--submap", "0,0", "--partner", "0,1",
+                             "--features", self.file("features.csv"))
+        features = pathlib.Path(self.file("features.csv")).read_text().splitlines()
+        self.assertEqual(len(features), content["counts"]["features"] + 1)
+        self.assertEqual(len(features[0].split(",")), 7 + 18)
+        self.check("done", 0, "inspect", a, "--submap", "0,0")
         self.check("done", 0, "export", closed, "--pgm", self.file("a.pgm"), "--png",
                    self.file("a2.png"), "--geojson", self.file("a.geojson"))
         self.check("done", 0, "batch", a, b, "-o", self.file("batch"))
         # What goes wrong.
         self.check("failed", 1, "info", self.file("none.pbstream"))
+        self.check("failed", 1, "inspect", a, "--submap", "0,999")
         self.check("failed", 1, "batch", a, self.file("none.pbstream"), "-o", self.file("batch2"))
         self.check("wrong_usage", 2, "merge", a, "-o", self.file("x.pbstream"))
         self.check_seen()

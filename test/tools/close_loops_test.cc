@@ -192,6 +192,7 @@ TEST_F(CloseLoopsTest, RefusesInOneLineAndWritesNothing) {
       {{"--configuration_basename", "none.lua"}, 1, "none.lua"},
       {{"--configuration_directory", "/none"}, 1, "/none"},
       {{"--frozen_trajectories", "one"}, 2, "one"},
+      {{"--frozen_trajectories", "7"}, 1, "has no trajectory 7"},
       {{"--threads", "-1"}, 2, "--threads"},
       {{"--closures", "/none/closures.csv"}, 1, "/none/closures.csv"},
       {{"--report", "/dev/null/report"}, 1, "/dev/null/report"},
@@ -205,6 +206,35 @@ TEST_F(CloseLoopsTest, RefusesInOneLineAndWritesNothing) {
     EXPECT_FALSE(std::filesystem::exists(File("never.pbstream")))
         << test.problem;
   }
+}
+
+// A truth of another building would say that the map is tens of metres off.
+TEST_F(CloseLoopsTest, ATruthOfAnotherMapIsNoticed) {
+  ASSERT_EQ(
+      RunTestProgram({"simulate", "--output", File("other.pbstream"), "--truth",
+                      File("other.csv"), "--length", "240", "--plan_seed", "5"})
+          .exit_code,
+      0);
+  const ProgramResult result =
+      RunTestProgram({"evaluate", File("open.pbstream"), "--truth",
+                      File("other.csv"), "--result", "-"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.error, HasSubstr("is the truth of another map"));
+  EXPECT_THAT(result.output, HasSubstr("\"status\": \"failed\""));
+}
+
+TEST_F(CloseLoopsTest, PicturesShowTheMapAsItBecomes) {
+  ASSERT_EQ(CloseLoops("drawn.pbstream", {"--picture", File("drawn.png"),
+                                          "--picture_pixels", "200"})
+                .exit_code,
+            0);
+  // That of the map that was written.
+  ASSERT_EQ(RunTestProgram({"export", File("drawn.pbstream"), "--png",
+                            File("again.png"), "--picture_pixels", "200"})
+                .exit_code,
+            0);
+  EXPECT_EQ(directory_->Read("drawn.png"), directory_->Read("again.png"));
+  EXPECT_EQ(CloseLoops("x.pbstream", {"--picture_pixels", "3"}).exit_code, 2);
 }
 
 TEST_F(CloseLoopsTest, MatchesByEitherMethod) {

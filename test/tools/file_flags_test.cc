@@ -126,6 +126,7 @@ TEST_F(FileFlagsTest, EveryFileFlagIsDeclared) {
       "max_clearances", "fail_on",
       "task",           "program",
       "map_filestem",   "geojson_origin",
+      "partner",
   };
   ForEach([](const SubcommandFlag&) { return true; },
           [&](const Subcommand&, const SubcommandFlag& flag) {
