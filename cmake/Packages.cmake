@@ -24,11 +24,11 @@ set(same_version "(= ${CPACK_DEBIAN_PACKAGE_VERSION})")
 
 set(CPACK_COMPONENTS_ALL program dev)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
-    "wide-baseline loop closing for maps of Cartographer 2D\n Recognises submaps of saved maps by their free space, closes loops, relocalises,\n merges and audits maps, without a pose prior. The program cartographer_sdf.")
+    "The program cartographer_sdf: recognises submaps of saved maps by their free space,\ncloses loops, relocalises, merges and audits maps, without a pose prior.")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME cartographer-sdf)
 
 set(CPACK_COMPONENT_DEV_DESCRIPTION
-    "libraries and headers of cartographer_sdf\n To find loop closures in maps of Cartographer 2D from one's own program.")
+    "Static libraries and headers, to find loop closures in maps of Cartographer 2D from\none's own program: find_package(cartographer_sdf) in CMake.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME libcartographer-sdf-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 # The targets that CMake exports include the program.
@@ -39,7 +39,7 @@ string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "cartographer-sdf ${same_versi
 if(TARGET cartographer_sdf_live)
   list(APPEND CPACK_COMPONENTS_ALL live)
   set(CPACK_COMPONENT_LIVE_DESCRIPTION
-      "cartographer_sdf beside a running Cartographer\n The library that wraps a map builder, with headers, and cartographer_sdf_run_log,\n which drives a recording. To build with it takes an installed Cartographer.")
+      "Beside a running Cartographer: cartographer_sdf_run_log, which drives a recording, and\nthe library that wraps a map builder, which takes an installed Cartographer to use.")
   set(CPACK_DEBIAN_LIVE_PACKAGE_NAME cartographer-sdf-live)
   set(CPACK_DEBIAN_LIVE_PACKAGE_DEPENDS "cartographer-sdf ${same_version}")
   set(CPACK_DEBIAN_LIVE_PACKAGE_SUGGESTS "libcartographer-sdf-dev ${same_version}")
@@ -48,13 +48,15 @@ endif()
 if(CARTOGRAPHER_SDF_BUILD_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
-      "cartographer_sdf for Python\n Maps, distance fields, features, matches and loop closing, as numpy arrays.")
+      "The Python module: maps, distance fields, features, matches and loop closing, as\nnumpy arrays.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-cartographer-sdf)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   # The module is for the minor version of Python that it was built with.
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "cartographer-sdf ${same_version}, python3 (>= ${MODULE_PYTHON_VERSION}), python3 (<< ${MODULE_NEXT_PYTHON_VERSION}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+      "${CMAKE_CURRENT_SOURCE_DIR}/cmake/debian/python/postinst;${CMAKE_CURRENT_SOURCE_DIR}/cmake/debian/python/prerm")
 endif()
 
 # Debian's place for the licence of each package.

@@ -124,7 +124,7 @@ absl::Status Summarize(const std::vector<BatchJob>& jobs,
   record->Count("failed", num_failed);
   record->Count("nothing", num_nothing);
   record->answer["maps"] = SummaryJson(rows);
-  std::cout << absl::StrFormat("%d maps, %d failed, %d without a result\n%s\n",
+  std::cout << absl::StrFormat("%d maps, %d failed, nothing found in %d\n%s\n",
                                rows.size(), num_failed, num_nothing,
                                InDirectory("index.html"));
   if (num_failed == 0) return absl::OkStatus();
