@@ -4,7 +4,7 @@
 # docker build -t cartographer_sdf --build-arg COMMIT="$(git describe --always --dirty)" .
 # docker run --rm -v "$PWD:/maps" cartographer_sdf close_loops map.pbstream -o closed.pbstream
 #
-# scripts/test_packages.sh does the steps of the second stage without Docker.
+# scripts/test_packages.sh --build does the steps of both stages without Docker.
 
 FROM debian:12 AS build
 ARG COMMIT=unknown

@@ -10,7 +10,9 @@ set -euo pipefail
 
 usage() {
   cat <<END
-usage: scripts/test_packages.sh [--with-libraries] [PACKAGES_DIR]
+usage: scripts/test_packages.sh [--build | PACKAGES_DIR] [--with-libraries]
+  --build           makes the packages in a bare Debian 12 of its own, too, from
+                    the files that git knows: both stages of the Dockerfile
   PACKAGES_DIR      where make_packages.sh left the .deb files, packages/ of the
                     checkout by default; made if there are none
   --with-libraries  also builds a program that uses the installed libraries, for
@@ -23,9 +25,11 @@ END
 
 SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 PACKAGES_DIR="${SOURCE_DIR}/packages"
+builds=false
 with_libraries=false
 while (($# > 0)); do
   case "$1" in
+    --build) builds=true ;;
     --with-libraries) with_libraries=true ;;
     -h | --help) usage && exit 0 ;;
     -*) usage >&2 && exit 2 ;;
@@ -51,14 +55,17 @@ MIRROR="$(apt-get indextargets --format '$(CODENAME) $(COMPONENT) $(REPO_URI)' '
   awk -v codename="${CODENAME}" '$1 == codename && $2 == "main" { print $3; exit }')"
 [[ -n "${MIRROR}" ]] || skip "apt knows no mirror of ${CODENAME}"
 
-compgen -G "${PACKAGES_DIR}/cartographer-sdf_*.deb" >/dev/null ||
+"${builds}" || compgen -G "${PACKAGES_DIR}/cartographer-sdf_*.deb" >/dev/null ||
   "${SOURCE_DIR}/scripts/make_packages.sh" "${PACKAGES_DIR}"
 
 WORK_DIR="$(mktemp -d "${WORK_DIR:-${TMPDIR:-/tmp}}/cartographer_sdf_root.XXXXXX")"
 ROOT="${WORK_DIR}/root"
 clean_up() {
   # Nothing of this machine may be mounted where files are removed.
-  if mountpoint --quiet "${ROOT}/proc"; then umount "${ROOT}/proc" || return; fi
+  local root
+  for root in "${WORK_DIR}"/*/proc; do
+    if mountpoint --quiet "${root}"; then umount "${root}" || return; fi
+  done
   rm -rf "${WORK_DIR}"
 }
 trap clean_up EXIT
@@ -75,11 +82,27 @@ shown() {
 step "a bare Debian 12"
 debootstrap --variant=minbase "${CODENAME}" "${ROOT}" "${MIRROR}" >"${WORK_DIR}/debootstrap.log" 2>&1 ||
   { tail -20 "${WORK_DIR}/debootstrap.log" >&2 && exit 1; }
-mount -t proc proc "${ROOT}/proc"
 # How this machine reaches its mirrors; not what it does with packages.
 cp /etc/resolv.conf "${ROOT}/etc/resolv.conf" 2>/dev/null || true
 apt-config dump Acquire | grep -E '^Acquire::(http|https)::?(Proxy|Verify|CaInfo)' \
   >"${ROOT}/etc/apt/apt.conf.d/90mirror" || true
+if "${builds}"; then
+  step "build the packages in another"
+  cp -a "${ROOT}" "${WORK_DIR}/builder"
+  ROOT="${WORK_DIR}/builder"
+  mount -t proc proc "${ROOT}/proc"
+  mkdir "${ROOT}/source"
+  git -C "${SOURCE_DIR}" ls-files -z |
+    tar --create --null --files-from - --directory "${SOURCE_DIR}" | tar --extract --directory "${ROOT}/source"
+  COMMIT="$(git -C "${SOURCE_DIR}" describe --always --dirty --abbrev=12)"
+  shown env BUILD_DIR=/build "CMAKE_OPTIONS=-DCARTOGRAPHER_SDF_COMMIT=${COMMIT}" \
+    /source/scripts/make_packages.sh /packages >"${WORK_DIR}/build.log" 2>&1 ||
+    { tail -30 "${WORK_DIR}/build.log" >&2 && exit 1; }
+  tail -4 "${WORK_DIR}/build.log"
+  PACKAGES_DIR="${ROOT}/packages"
+  ROOT="${WORK_DIR}/root"
+fi
+mount -t proc proc "${ROOT}/proc"
 in_root dpkg-query --show | sort >"${WORK_DIR}/before"
 echo "$(wc -l <"${WORK_DIR}/before") packages, no compiler, no Python"
 
