@@ -439,6 +439,46 @@ SDF_GLOBAL_CONSTRAINTS = {
     hit_probability = 0.55,
     miss_probability = 0.49,
   },
+  -- Where a robot stands, by one scan (relocalize --scan).
+  scan_localization = {
+    -- Where in the map a robot can stand.
+    viewpoints = {
+      -- [m] Distance between neighbouring places that the scan is compared with.
+      -- Smaller: slower, quadratically; larger: the right one may be missed.
+      step_meters = 0.3,
+      -- In a map with room for more, they are farther apart. Larger: slower in
+      -- large maps.
+      max_num_viewpoints = 60000,
+      -- [m] Least distance from the lidar to a wall.
+      min_clearance_meters = 0.15,
+    },
+    -- Poses that are registered, of those that fit best. Larger: slower, and
+    -- less likely that the right one is missed.
+    num_registered_poses = 200,
+    -- Least number of echoes, of which each degree counts once.
+    min_num_beams = 30,
+    -- [m] Farther echoes are left out.
+    max_range_meters = 60.,
+    -- Which of the candidates is the right one. Learned by
+    -- scripts/measure_scan_localization.py, as those below.
+    candidate_weights = {
+      fit = 27.2,
+      loose_fit = -26.,
+      log_through = -3.,
+      log_free = -2.4,
+      in_unknown = -14.7,
+    },
+    -- Whether the right pose is among the candidates at all.
+    presence_weights = {
+      loose_fit = -20.4,
+      log_through = -1.52,
+      log_free = -0.47,
+      in_unknown = -8.6,
+      num_beams = 4.9,
+      lead = 19.4,
+      bias = -7.6,
+    },
+  },
   -- Detection of merged maps that fold over each other (merge).
   fold_check = {
     -- Submaps contradict each other if a larger fraction of their walls lies in

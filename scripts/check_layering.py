@@ -33,7 +33,8 @@ CORE = {
 }
 OFFLINE = {
     "file": [],
-    "recording": ["geometry"],
+    "map_image": ["geometry", "grid"],
+    "recording": ["geometry", "grid", "file"],
     "pose_graph": ["geometry", "grid"],
     "pbstream": ["execution", "geometry", "grid", "file",
                  "pose_graph/pose_graph.h", "proto"],
@@ -47,7 +48,7 @@ OFFLINE = {
     "config": [*CORE, "pose_graph", "closing", "localization", "apps",
                "report/report_options.h"],
     "simulation": ["execution", "geometry", "grid",
-                   "field/distance_transform.h", "file",
+                   "field/distance_transform.h", "file", "map_image",
                    "pose_graph/pose_graph.h", "pbstream", "proto"],
     "evaluation": [*CORE, "file", "pose_graph", "pbstream", "place_store",
                    "closing", "localization", "apps", "report", "config",

@@ -27,7 +27,7 @@ PACKAGES=(
   # Libraries, in the order of CMakeLists.txt.
   libeigen3-dev libgoogle-glog-dev libgflags-dev libabsl-dev libceres-dev
   libprotobuf-dev zlib1g-dev liblua5.2-dev libcairo2-dev
-  nlohmann-json3-dev
+  nlohmann-json3-dev libyaml-cpp-dev
   # Tests and benchmarks.
   libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema parallel
 )

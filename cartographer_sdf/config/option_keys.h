@@ -339,6 +339,41 @@ inline void VisitOptions(OptionVisitor& visit, LocalizationOptions& options) {
   visit("max_num_confirmed_pairs", options.max_num_confirmed_pairs);
 }
 
+inline void VisitOptions(OptionVisitor& visit, ViewpointOptions& options) {
+  visit("step_meters", options.step_meters);
+  visit("max_num_viewpoints", options.max_num_viewpoints);
+  visit("min_clearance_meters", options.min_clearance_meters);
+}
+
+inline void VisitOptions(OptionVisitor& visit, CandidateWeights& weights) {
+  visit("fit", weights.fit);
+  visit("loose_fit", weights.loose_fit);
+  visit("log_through", weights.log_through);
+  visit("log_free", weights.log_free);
+  visit("in_unknown", weights.in_unknown);
+}
+
+inline void VisitOptions(OptionVisitor& visit, PresenceWeights& weights) {
+  visit("loose_fit", weights.loose_fit);
+  visit("log_through", weights.log_through);
+  visit("log_free", weights.log_free);
+  visit("in_unknown", weights.in_unknown);
+  visit("num_beams", weights.num_beams);
+  visit("lead", weights.lead);
+  visit("bias", weights.bias);
+}
+
+inline void VisitOptions(OptionVisitor& visit,
+                         ScanLocalizationOptions& options) {
+  visit("viewpoints", options.viewpoints);
+  visit("num_registered_poses", options.num_registered_poses);
+  visit("min_num_beams", options.min_num_beams);
+  visit("max_range_meters", options.max_range_meters);
+  visit("candidate_weights", options.candidate_weights);
+  visit("presence_weights", options.presence_weights);
+  visit("min_probability", options.min_probability);
+}
+
 inline void VisitOptions(OptionVisitor& visit, FoldCheckOptions& options) {
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
@@ -354,6 +389,7 @@ inline void VisitOptions(OptionVisitor& visit, Options& options) {
   visit("loop_closing", options.loop_closing);
   visit("localization", options.localization);
   visit("scan_places", options.scan_places);
+  visit("scan_localization", options.scan_localization);
   visit("fold_check", options.fold_check);
   visit("audit", options.audit);
   visit("report", options.report);

@@ -14,6 +14,7 @@
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/apps/fold_check.h"
 #include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
 #include "cartographer_sdf/report/report_options.h"
 
@@ -26,6 +27,7 @@ struct Options {
   LoopClosingOptions loop_closing;
   LocalizationOptions localization;
   ScanPlaceOptions scan_places;
+  ScanLocalizationOptions scan_localization;
   FoldCheckOptions fold_check;
   AuditOptions audit;
   ReportOptions report;

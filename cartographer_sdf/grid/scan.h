@@ -26,6 +26,12 @@ struct PlacedScan {
   Scan scan;
 };
 
+// A scan of one of the sensors of a robot.
+struct RobotScan {
+  Rigid2 T_robot_sensor;
+  Scan scan;
+};
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_GRID_SCAN_H_

@@ -98,6 +98,25 @@ Json LinksJson(const std::vector<SessionLink>& links) {
   return json;
 }
 
+Json CandidateJson(const ScanCandidate& candidate) {
+  Json covariance = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    covariance.push_back({candidate.covariance(row, 0),
+                          candidate.covariance(row, 1),
+                          candidate.covariance(row, 2)});
+  }
+  const BeamEvidence& evidence = candidate.evidence;
+  return {{"T_map_robot", ToJson(candidate.T_map_robot)},
+          {"probability", candidate.probability},
+          {"covariance", covariance},
+          {"beams", evidence.num_beams},
+          {"fit", evidence.fit},
+          {"at_wall", evidence.at_wall},
+          {"through_wall", evidence.through_wall},
+          {"in_free_space", evidence.in_free_space},
+          {"in_unknown", evidence.in_unknown}};
+}
+
 // How many closures have each status.
 Json StatusesJson(const std::vector<Closure>& closures) {
   std::map<std::string, int> counts;
@@ -132,6 +151,23 @@ Json ToJson(const Localization& result) {
                {"placements", PlacementsJson(result.placements)},
                {"milliseconds", MillisecondsJson(result.stage_seconds)}});
   return json;
+}
+
+Json ToJson(const ScanLocalization& result) {
+  const bool is_localized = result.verdict == LocalizationVerdict::kLocalized;
+  Json candidates = Json::array();
+  for (const ScanCandidate& candidate : result.candidates) {
+    candidates.push_back(CandidateJson(candidate));
+  }
+  return {
+      {"localized", is_localized},
+      {"verdict", LocalizationVerdictName(result.verdict)},
+      {"reason", result.reason},
+      {"T_map_robot",
+       is_localized ? ToJson(result.candidates.front().T_map_robot) : Json()},
+      {"candidates", candidates},
+      {"elsewhere_probability", result.elsewhere_probability},
+      {"milliseconds", MillisecondsJson(result.stage_seconds)}};
 }
 
 Json ToJson(const MergingResult& result) {

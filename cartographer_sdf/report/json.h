@@ -16,6 +16,7 @@
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_localizer.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_sdf {
@@ -45,6 +46,9 @@ template <typename T>
 
 // The file R.json of relocalize.
 [[nodiscard]] Json ToJson(const Localization& result);
+
+// The file R.json of relocalize --scan.
+[[nodiscard]] Json ToJson(const ScanLocalization& result);
 
 // The outcome of each session, and of each pair of sessions.
 [[nodiscard]] Json ToJson(const MergingResult& result);

@@ -17,6 +17,8 @@
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/closing/torn_submaps.h"
+#include "cartographer_sdf/grid/scan.h"
+#include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/report/html_report.h"
@@ -110,6 +112,15 @@ void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
 [[nodiscard]] absl::Status WriteRelocalizationReport(
     const ReportRequest& request, const Session& map, const Session& query,
     const Localization& result, const ProgressCallback& on_progress);
+
+// The map with every candidate as an arrow with its probability, and the scans
+// at the best ones.
+[[nodiscard]] absl::Status WriteScanReport(const ReportRequest& request,
+                                           const std::string& map_name,
+                                           const std::string& scan_name,
+                                           const OccupancyGrid& grid,
+                                           const std::vector<RobotScan>& scans,
+                                           const ScanLocalization& result);
 
 [[nodiscard]] absl::Status WriteMergingReport(
     const ReportRequest& request, const MergingResult& result,

@@ -3,78 +3,19 @@
 
 #include "cartographer_sdf/simulation/floor_plan.h"
 
-#include <cctype>
-#include <cstdint>
-#include <fstream>
-#include <limits>
-#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/map_image/grey_image.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// Bounds on the memory that a hostile header can request, and on the number of
-// cells along an axis.
-constexpr int64_t kMaxPixels = 25'000'000;
-constexpr int64_t kMaxSide = 30'000;
 // The free threshold of ROS's map_server, 0.196 occupied, rounded so that its
 // grey for unknown cells (205 of 255) is not free.
 constexpr double kFreeBrightness = 0.81;
-
-// Reads a decimal number of a PGM header or of P2 data; none if it is missing
-// or exceeds `maximum`.
-std::optional<int64_t> ReadNumber(const int64_t maximum,
-                                  std::istream* const in) {
-  while ((*in >> std::ws).peek() == '#') {
-    in->ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  int64_t number = 0;
-  // Without a sign.
-  if (!std::isdigit(in->peek()) || !(*in >> number) || number > maximum) {
-    return std::nullopt;
-  }
-  return number;
-}
-
-std::optional<int64_t> ReadPixel(const bool is_text, const int64_t maximum,
-                                 std::istream* in) {
-  if (is_text) return ReadNumber(maximum, in);
-  int64_t pixel = in->get();
-  if (maximum > 255) pixel = 256 * pixel + in->get();
-  if (!in->good() || pixel > maximum) return std::nullopt;
-  return pixel;
-}
-
-struct PgmHeader {
-  bool is_text = false;
-  int64_t width = 0;
-  int64_t height = 0;
-  int64_t maximum = 0;  // of a pixel: white
-};
-
-absl::StatusOr<PgmHeader> ReadPgmHeader(const std::string& path,
-                                        std::istream* const in) {
-  const int magic[2] = {in->get(), in->get()};
-  const bool is_text = magic[1] == '2';
-  if (magic[0] != 'P' || (!is_text && magic[1] != '5')) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, " is not a PGM image (P2 or P5)"));
-  }
-  const std::optional<int64_t> width = ReadNumber(kMaxSide, in);
-  const std::optional<int64_t> height = ReadNumber(kMaxSide, in);
-  const std::optional<int64_t> maximum = ReadNumber(65535, in);
-  if (!width || !height || !maximum || *width < 1 || *height < 1 ||
-      *maximum < 1 || *width > kMaxPixels / *height ||
-      !std::isspace(in->get())) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the PGM header of ", path, " is broken or too large"));
-  }
-  return PgmHeader{is_text, *width, *height, *maximum};
-}
 
 // Calls visit(cell, cell centre relative to the box centre) for the cells of a
 // box with the given half sizes, clipped to the plan.
@@ -169,26 +110,14 @@ absl::StatusOr<FloorPlan> ReadPgm(const std::string& path,
     return absl::InvalidArgumentError(absl::StrCat(
         "the resolution of ", path, " must lie between 0.01 m and 1 m"));
   }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return absl::NotFoundError(absl::StrCat("cannot open ", path));
-  const absl::StatusOr<PgmHeader> header = ReadPgmHeader(path, &in);
-  if (!header.ok()) return header.status();
-  const auto& [is_text, width, height, maximum] = *header;
+  const absl::StatusOr<GreyImage> image = ReadPgmImage(path);
+  if (!image.ok()) return image.status();
   FloorPlan plan;
   plan.geometry.resolution = resolution;
-  plan.geometry.size = Eigen::Array2i(width, height);
-  plan.occupied.resize(width, height);
-  for (int64_t k = 0; k != width * height; ++k) {
-    const std::optional<int64_t> pixel = ReadPixel(is_text, maximum, &in);
-    if (!pixel) {
-      return absl::DataLossError(absl::StrCat(
-          path, " ends or is corrupted at pixel ", k, " of ", width * height));
-    }
-    // By rows, starting at the upper left.
-    plan.occupied(k % width, height - 1 - k / width) =
-        static_cast<double>(*pixel) <
-        kFreeBrightness * static_cast<double>(maximum);
-  }
+  plan.geometry.size =
+      Eigen::Array2i(static_cast<int>(image->brightness.rows()),
+                     static_cast<int>(image->brightness.cols()));
+  plan.occupied = image->brightness < static_cast<float>(kFreeBrightness);
   return plan;
 }
 

@@ -18,6 +18,7 @@
 #include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/scan_localization.h"
 #include "cartographer_sdf/tools/stages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
@@ -61,7 +62,28 @@ absl::StatusOr<std::optional<TimeWindow>> WindowOfFlags() {
   return TimeWindow{FLAGS_start_seconds, FLAGS_first_seconds};
 }
 
+// Of what is localised: a map or its scans, or a scan.
+absl::Status CheckQueryFlags() {
+  if (FLAGS_scan.empty()) {
+    if (!FLAGS_query.empty()) return absl::OkStatus();
+    return UsageError(
+        "--query is missing, the map or drive to find, or --scan, the scan");
+  }
+  for (const char* const flag : {"query", "first_seconds", "start_seconds",
+                                 "num_starts", "output", "places"}) {
+    if (IsGiven(flag)) {
+      return UsageError(absl::StrCat("--", flag, " does not go with --scan"));
+    }
+  }
+  if (SplitPaths(FLAGS_scan).size() > 1 && !FLAGS_report.empty()) {
+    return UsageError("--report takes a single --scan");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status CheckFlagsOfRelocalize() {
+  const absl::Status query = CheckQueryFlags();
+  if (!query.ok()) return query;
   const absl::Status window = WindowOfFlags().status();
   if (!window.ok()) return window;
   if (!IsGiven("num_starts")) return absl::OkStatus();
@@ -229,6 +251,7 @@ absl::Status RunOnce(const MapTask& task,
 }
 
 absl::Status RunRelocalize(RunRecord* const record) {
+  if (!FLAGS_scan.empty()) return RunScanLocalization(record);
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("relocalize");
   if (!task.ok()) return task.status();
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
@@ -250,7 +273,7 @@ Subcommand RelocalizeSubcommand() {
   Subcommand subcommand{
       "relocalize",
       "find a map, or the start of a drive, in a map",
-      "A.pbstream B.pbstream [--first_seconds N] "
+      "A.pbstream (B.pbstream [--first_seconds N] | --scan S.json) "
       "[--result R.json] [--output M.pbstream] [--report DIR]",
       "Searches for every submap of the query in the map, without a pose "
       "prior. The matches vote, and a pose is reported only if it is certain; "
@@ -260,10 +283,19 @@ Subcommand RelocalizeSubcommand() {
       "in the map frame [m, rad].\n\n"
       "With --output, writes both maps as one: the query is attached to the "
       "map of --map, which does not move, and optimised. If the query is "
-      "not localized, nothing is written, and the exit code is 3.",
-      {{"map", FileUse::kRead},
-       {"query", FileUse::kRead, {}, "Map to search for, a .pbstream."}},
-      {"first_seconds",
+      "not localized, nothing is written, and the exit code is 3.\n\n"
+      "With --scan in place of --query, finds a robot that stands still: all "
+      "poses that explain its scans, each with its probability. --map may then "
+      "also be a map of ROS's map_server: its .yaml file, or the .pgm or .png "
+      "image beside it.",
+      {{"map",
+        FileUse::kRead,
+        {},
+        "Map to search in, a .pbstream, or with --scan also a map of ROS "
+        "(.yaml, .pgm, .png)."}},
+      {{"query", FileUse::kRead, {}, "Map to search for, a .pbstream."},
+       {"scan", FileUse::kReadList},
+       "first_seconds",
        "start_seconds",
        "num_starts",
        {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream of both."},

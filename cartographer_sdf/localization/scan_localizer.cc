@@ -1,0 +1,298 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/localization/scan_localizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/geometry/distinct_poses.h"
+#include "cartographer_sdf/localization/compared_numbers.h"
+#include "cartographer_sdf/localization/panorama_search.h"
+#include "cartographer_sdf/localization/sweep.h"
+#include "cartographer_sdf/localization/sweep_registration.h"
+#include "glog/logging.h"
+
+namespace cartographer_sdf {
+namespace {
+
+// Of a sweep that is measured: one beam per degree.
+constexpr int kNumMeasuredDirections = 360;
+constexpr size_t kNumCoarseBeams = 64;
+constexpr double kCoarseKernelScale = 0.8, kFineKernelScale = 0.3;  // [m]
+constexpr size_t kMaxNumCandidates = 40;
+constexpr PoseTolerance kSamePose{0.5, 0.175};
+// Of the candidates, this one fits by chance, since few buildings repeat a
+// place more often; and how well the best of fewer would.
+constexpr size_t kChanceCandidate = 8;
+constexpr double kChanceFit = 0.35;
+constexpr double kMinFraction = 0.03;
+// With at most this probability of being elsewhere, the robot is in the map,
+// and the only question is where.
+constexpr double kMaxElsewhereIfAmbiguous = 0.05;
+// A gap this wide in the field of view is worth turning for.
+constexpr double kWideGap = M_PI / 4.;
+
+double LooseFit(const BeamEvidence& evidence) {
+  return evidence.at_wall - evidence.fit;
+}
+double LogFraction(const double fraction) {
+  return std::log(kMinFraction + fraction);
+}
+
+double Utility(const CandidateWeights& weights, const BeamEvidence& evidence) {
+  return weights.fit * evidence.fit + weights.loose_fit * LooseFit(evidence) +
+         weights.log_through * LogFraction(evidence.through_wall) +
+         weights.log_free * LogFraction(evidence.in_free_space) +
+         weights.in_unknown * evidence.in_unknown;
+}
+
+// The probability that the right pose is among the candidates, the best first.
+double PresenceProbability(const PresenceWeights& weights,
+                           const std::vector<ScanCandidate>& candidates) {
+  const BeamEvidence& best = candidates.front().evidence;
+  const double chance_fit = candidates.size() > kChanceCandidate
+                                ? candidates[kChanceCandidate].evidence.fit
+                                : kChanceFit;
+  const double log_odds =
+      weights.loose_fit * LooseFit(best) +
+      weights.log_through * LogFraction(best.through_wall) +
+      weights.log_free * LogFraction(best.in_free_space) +
+      weights.in_unknown * best.in_unknown +
+      weights.num_beams * best.num_beams / kNumMeasuredDirections +
+      weights.lead * (best.fit - chance_fit) + weights.bias;
+  return 1. / (1. + std::exp(-log_odds));
+}
+
+// Registers poses of the robot in the grid and returns the best distinct ones.
+std::vector<ScanCandidate> RegisterAll(const CandidateWeights& weights,
+                                       const RayMap& map, const Sweep& sweep,
+                                       const size_t num_beams,
+                                       const double kernel_scale,
+                                       const std::vector<Rigid2>& poses) {
+  std::vector<std::pair<double, ScanCandidate>> registered;
+  for (const Rigid2& pose : poses) {
+    const std::optional<RegisteredSweep> found =
+        RegisterSweep(map.field, sweep, num_beams, kernel_scale, pose);
+    if (!found) continue;
+    ScanCandidate candidate;
+    candidate.T_map_robot = found->T_grid_robot;
+    candidate.covariance = found->covariance;
+    candidate.evidence = MeasureBeams(map, sweep, found->T_grid_robot);
+    registered.emplace_back(Utility(weights, candidate.evidence), candidate);
+  }
+  std::stable_sort(
+      registered.begin(), registered.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<ScanCandidate> candidates;
+  for (const auto& entry : KeepDistinct(
+           registered,
+           [](const auto& candidate) { return candidate.second.T_map_robot; },
+           sweep.centre, kSamePose, kMaxNumCandidates)) {
+    candidates.push_back(entry.second);
+  }
+  return candidates;
+}
+
+int NumEchoes(const Sweep& sweep) {
+  return static_cast<int>(
+      std::count_if(sweep.beams.begin(), sweep.beams.end(),
+                    [](const RobotBeam& beam) { return beam.has_echo; }));
+}
+
+std::vector<Rigid2> PosesOf(const std::vector<ScanCandidate>& candidates) {
+  std::vector<Rigid2> poses;
+  for (const ScanCandidate& candidate : candidates) {
+    poses.push_back(candidate.T_map_robot);
+  }
+  return poses;
+}
+
+void AssignProbabilities(const ScanLocalizationOptions& options,
+                         ScanLocalization* const result) {
+  std::vector<ScanCandidate>& candidates = result->candidates;
+  const double best =
+      Utility(options.candidate_weights, candidates.front().evidence);
+  double sum = 0.;
+  for (ScanCandidate& candidate : candidates) {
+    candidate.probability =
+        std::exp(Utility(options.candidate_weights, candidate.evidence) - best);
+    sum += candidate.probability;
+  }
+  const double presence =
+      PresenceProbability(options.presence_weights, candidates);
+  for (ScanCandidate& candidate : candidates) {
+    candidate.probability *= presence / sum;
+  }
+  result->elsewhere_probability = 1. - presence;
+}
+
+std::string FormatScanPose(const Rigid2& pose) {
+  return absl::StrFormat("(%.2f, %.2f, %.0f degrees)", pose.translation().x(),
+                         pose.translation().y(), pose.rotation() * 180. / M_PI);
+}
+
+std::string Advice(const Sweep& sweep) {
+  return sweep.widest_gap > kWideGap
+             ? absl::StrFormat(
+                   "turn around (%.0f degrees were not seen) or drive 5 m",
+                   sweep.widest_gap * 180. / M_PI)
+             : "drive 5 m";
+}
+
+std::string DescribeFit(const BeamEvidence& evidence) {
+  return absl::StrFormat(
+      "%.0f %% of its beams end at walls, %.0f %% cross walls, %.0f %% meet "
+      "something that is not in the map",
+      100. * evidence.at_wall, 100. * evidence.through_wall,
+      100. * evidence.in_free_space);
+}
+
+// Of the candidates, how many it takes to hold nine tenths of what they hold.
+size_t NumLikely(const ScanLocalization& result) {
+  double left = 0.9 * (1. - result.elsewhere_probability);
+  size_t count = 0;
+  while (count < result.candidates.size() && left > 0.) {
+    left -= result.candidates[count++].probability;
+  }
+  return count;
+}
+
+void JudgeCandidates(const ScanLocalizationOptions& options, const Sweep& sweep,
+                     ScanLocalization* const result) {
+  const ScanCandidate& best = result->candidates.front();
+  const ComparedNumbers compared =
+      FormatCompared(best.probability, options.min_probability, 3);
+  if (best.probability >= options.min_probability) {
+    result->verdict = LocalizationVerdict::kLocalized;
+    result->reason =
+        absl::StrCat("one pose has the probability ", compared.number, ": ",
+                     DescribeFit(best.evidence));
+  } else if (result->elsewhere_probability > 0.5) {
+    result->verdict = LocalizationVerdict::kNothingAlike;
+    result->reason = absl::StrFormat(
+        "it fits nowhere well: at the best pose %s; with the probability %.2f "
+        "the robot is where the map never was, or too much has changed; %s",
+        DescribeFit(best.evidence), result->elsewhere_probability,
+        Advice(sweep));
+  } else if (result->elsewhere_probability <= kMaxElsewhereIfAmbiguous &&
+             NumLikely(*result) > 1) {
+    result->verdict = LocalizationVerdict::kAmbiguous;
+    result->reason = absl::StrFormat(
+        "%d poses look alike; the best two are %s with the probability %.2f "
+        "and %s with %.2f; %s",
+        NumLikely(*result), FormatScanPose(best.T_map_robot), best.probability,
+        FormatScanPose(result->candidates[1].T_map_robot),
+        result->candidates[1].probability, Advice(sweep));
+  } else {
+    result->verdict = LocalizationVerdict::kUncertain;
+    result->reason = absl::StrFormat(
+        "the best pose, %s, has the probability %s, and certain is %s; being "
+        "elsewhere has %.2f; %s",
+        FormatScanPose(best.T_map_robot), compared.number, compared.threshold,
+        result->elsewhere_probability, Advice(sweep));
+  }
+}
+
+// Into the map frame.
+ScanCandidate MovedToMap(const Rigid2& T_map_grid, ScanCandidate candidate) {
+  candidate.T_map_robot = T_map_grid * candidate.T_map_robot;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  rotation.topLeftCorner<2, 2>() = T_map_grid.RotationMatrix();
+  candidate.covariance = rotation * candidate.covariance * rotation.transpose();
+  return candidate;
+}
+
+}  // namespace
+
+std::string Validate(const CandidateWeights& weights) {
+  const double sum = weights.fit + weights.loose_fit + weights.log_through +
+                     weights.log_free + weights.in_unknown;
+  return std::isfinite(sum) ? "" : "weights must be finite";
+}
+
+std::string Validate(const PresenceWeights& weights) {
+  const double sum = weights.loose_fit + weights.log_through +
+                     weights.log_free + weights.in_unknown + weights.num_beams +
+                     weights.lead + weights.bias;
+  return std::isfinite(sum) ? "" : "weights must be finite";
+}
+
+std::string Validate(const ScanLocalizationOptions& options) {
+  if (options.num_registered_poses < 1 ||
+      options.num_registered_poses > 100'000) {
+    return "num_registered_poses must lie between 1 and 100000";
+  }
+  if (options.min_num_beams < 5 ||
+      options.min_num_beams > kNumMeasuredDirections) {
+    return "min_num_beams must lie between 5 and 360";
+  }
+  if (!(options.max_range_meters > 0. && options.max_range_meters <= 1000.)) {
+    return "max_range_meters must lie between 0 and 1000";
+  }
+  if (!(options.min_probability > 0.5 && options.min_probability < 1.)) {
+    return "min_probability must lie between 0.5 and 1";
+  }
+  return "";
+}
+
+std::optional<PanoramaMap> MakePanoramaMap(
+    const ViewpointOptions& options, const OccupancyGrid& grid,
+    const std::vector<Eigen::Vector2d>& driven_positions) {
+  std::optional<RayMap> rays = MakeRayMap(grid);
+  if (!rays) return std::nullopt;
+  const BoolArray reachable =
+      ReachableCells(*rays, options.min_clearance_meters, driven_positions);
+  if (!reachable.any()) return std::nullopt;
+  Viewpoints viewpoints = MakeViewpoints(options, *rays, reachable);
+  return PanoramaMap{*std::move(rays), std::move(viewpoints)};
+}
+
+ScanLocalization LocalizeScans(const ScanLocalizationOptions& options,
+                               const PanoramaMap& map,
+                               const std::vector<RobotScan>& scans) {
+  CHECK_EQ(Validate(options), "");
+  ScanLocalization result;
+  StageClock clock({}, &result.stage_seconds);
+  clock.Begin("search");
+  const Sweep coarse =
+      MakeSweep(scans, kNumDirections, options.max_range_meters);
+  const Sweep fine =
+      MakeSweep(scans, kNumMeasuredDirections, options.max_range_meters);
+  const int num_echoes = NumEchoes(fine);
+  if (num_echoes < options.min_num_beams) {
+    clock.End();
+    result.verdict = LocalizationVerdict::kTooLittleSeen;
+    result.reason = absl::StrFormat(
+        "there are echoes in %d directions, and it takes %d; %s", num_echoes,
+        options.min_num_beams, Advice(fine));
+    return result;
+  }
+  const std::vector<Rigid2> poses =
+      SearchPanoramas(map.viewpoints, map.rays.geometry().resolution, coarse,
+                      static_cast<size_t>(options.num_registered_poses));
+  clock.Begin("register coarsely");
+  const std::vector<ScanCandidate> candidates =
+      RegisterAll(options.candidate_weights, map.rays, coarse, kNumCoarseBeams,
+                  kCoarseKernelScale, poses);
+  clock.Begin("register finely");
+  result.candidates =
+      RegisterAll(options.candidate_weights, map.rays, fine, kNoLimit,
+                  kFineKernelScale, PosesOf(candidates));
+  clock.End();
+  if (result.candidates.empty()) {
+    result.reason = "no pose of the map has its echoes near walls";
+    return result;
+  }
+  for (ScanCandidate& candidate : result.candidates) {
+    candidate = MovedToMap(map.rays.geometry().T_submap_grid, candidate);
+  }
+  AssignProbabilities(options, &result);
+  JudgeCandidates(options, fine, &result);
+  return result;
+}
+
+}  // namespace cartographer_sdf
