@@ -287,7 +287,7 @@ class Measurement:
                         {"points": [[round(x, 4), round(y, 4)] for x, y in points]}))
                 self.run("relocalize", "--map", self.map(s.map), "--scan",
                          ",".join(map(str, paths)), "--result", result)
-        return [(int(pathlib.Path(r["scan"]).stem), r) for r in json.loads(result.read_text())]
+        return [(int(pathlib.Path(r["scan"]).stem), r) for r in json.loads(result.read_text())["scans"]]
 
     def right_poses(self, s, index):
         """Where the node is in the map: one pose, or all that look the same."""
@@ -437,7 +437,7 @@ def candidate_terms(c):
 
 def presence_terms(candidates):
     best = candidates[0]
-    chance = candidates[8]["fit"] if len(candidates) > 8 else .35
+    chance = candidates[5]["fit"] if len(candidates) > 5 else .35
     return candidate_terms(best)[1:] + [best["beams"] / 360., best["fit"] - chance, 1.]
 
 

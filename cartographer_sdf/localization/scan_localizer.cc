@@ -27,7 +27,7 @@ constexpr size_t kMaxNumCandidates = 40;
 constexpr PoseTolerance kSamePose{0.5, 0.175};
 // Of the candidates, this one fits by chance, since few buildings repeat a
 // place more often; and how well the best of fewer would.
-constexpr size_t kChanceCandidate = 8;
+constexpr size_t kChanceCandidate = 5;
 constexpr double kChanceFit = 0.35;
 constexpr double kMinFraction = 0.03;
 // With at most this probability of being elsewhere, the robot is in the map,
@@ -206,6 +206,34 @@ ScanCandidate MovedToMap(const Rigid2& T_map_grid, ScanCandidate candidate) {
   return candidate;
 }
 
+// Searches with few beams, registers with few beams what fits best, and what is
+// left with all beams of the sweep.
+std::vector<ScanCandidate> FindCandidates(
+    const ScanLocalizationOptions& options, const PanoramaMap& map,
+    const std::vector<RobotScan>& scans, const Sweep& sweep,
+    std::vector<std::pair<std::string, double>>* const stage_seconds) {
+  StageClock clock({}, stage_seconds);
+  clock.Begin("search");
+  const Sweep coarse =
+      MakeSweep(scans, kNumDirections, options.max_range_meters);
+  const std::vector<Rigid2> poses =
+      SearchPanoramas(map.viewpoints, map.rays.geometry().resolution, coarse,
+                      static_cast<size_t>(options.num_registered_poses));
+  clock.Begin("register coarsely");
+  const std::vector<ScanCandidate> likely =
+      RegisterAll(options.candidate_weights, map.rays, coarse, kNumCoarseBeams,
+                  kCoarseKernelScale, poses);
+  clock.Begin("register finely");
+  std::vector<ScanCandidate> candidates =
+      RegisterAll(options.candidate_weights, map.rays, sweep, kNoLimit,
+                  kFineKernelScale, PosesOf(likely));
+  for (ScanCandidate& candidate : candidates) {
+    candidate = MovedToMap(map.rays.geometry().T_submap_grid, candidate);
+  }
+  clock.End();
+  return candidates;
+}
+
 }  // namespace
 
 std::string Validate(const CandidateWeights& weights) {
@@ -222,6 +250,11 @@ std::string Validate(const PresenceWeights& weights) {
 }
 
 std::string Validate(const ScanLocalizationOptions& options) {
+  for (const std::string& error :
+       {Validate(options.viewpoints), Validate(options.candidate_weights),
+        Validate(options.presence_weights)}) {
+    if (!error.empty()) return error;
+  }
   if (options.num_registered_poses < 1 ||
       options.num_registered_poses > 100'000) {
     return "num_registered_poses must lie between 1 and 100000";
@@ -256,42 +289,24 @@ ScanLocalization LocalizeScans(const ScanLocalizationOptions& options,
                                const std::vector<RobotScan>& scans) {
   CHECK_EQ(Validate(options), "");
   ScanLocalization result;
-  StageClock clock({}, &result.stage_seconds);
-  clock.Begin("search");
-  const Sweep coarse =
-      MakeSweep(scans, kNumDirections, options.max_range_meters);
-  const Sweep fine =
+  const Sweep sweep =
       MakeSweep(scans, kNumMeasuredDirections, options.max_range_meters);
-  const int num_echoes = NumEchoes(fine);
+  const int num_echoes = NumEchoes(sweep);
   if (num_echoes < options.min_num_beams) {
-    clock.End();
     result.verdict = LocalizationVerdict::kTooLittleSeen;
     result.reason = absl::StrFormat(
         "there are echoes in %d directions, and it takes %d; %s", num_echoes,
-        options.min_num_beams, Advice(fine));
+        options.min_num_beams, Advice(sweep));
     return result;
   }
-  const std::vector<Rigid2> poses =
-      SearchPanoramas(map.viewpoints, map.rays.geometry().resolution, coarse,
-                      static_cast<size_t>(options.num_registered_poses));
-  clock.Begin("register coarsely");
-  const std::vector<ScanCandidate> candidates =
-      RegisterAll(options.candidate_weights, map.rays, coarse, kNumCoarseBeams,
-                  kCoarseKernelScale, poses);
-  clock.Begin("register finely");
   result.candidates =
-      RegisterAll(options.candidate_weights, map.rays, fine, kNoLimit,
-                  kFineKernelScale, PosesOf(candidates));
-  clock.End();
+      FindCandidates(options, map, scans, sweep, &result.stage_seconds);
   if (result.candidates.empty()) {
     result.reason = "no pose of the map has its echoes near walls";
     return result;
   }
-  for (ScanCandidate& candidate : result.candidates) {
-    candidate = MovedToMap(map.rays.geometry().T_submap_grid, candidate);
-  }
   AssignProbabilities(options, &result);
-  JudgeCandidates(options, fine, &result);
+  JudgeCandidates(options, sweep, &result);
   return result;
 }
 

@@ -46,7 +46,7 @@ struct PresenceWeights {
   double log_free = -0.47;
   double in_unknown = -8.6;
   double num_beams = 4.9;  // in turns, of one beam per degree
-  // How much better it fits than what fits by chance: the ninth best candidate.
+  // How much better it fits than what fits by chance: the sixth best candidate.
   double lead = 19.4;
   double bias = -7.6;
 };

@@ -10,7 +10,7 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr float kMinOccupiedFraction = 1.f / 3.f;
+constexpr float kMinOccupiedFraction = 0.5f;
 constexpr double kMaxMapCoordinate = 1e7;
 constexpr int kMaxUnionSide = 32000;  // distance_transform.h
 // How much the least certain cell counts.
@@ -53,7 +53,11 @@ UnionGrid::UnionGrid(const std::vector<GridFootprint>& grids) {
     resolution = std::min(resolution, grid.geometry.resolution);
   }
   if (bounds.isEmpty()) return;
+  const double finest = resolution;
   while (!FitsMemory(bounds.sizes(), resolution)) resolution *= 1.25;
+  // A wall of one small cell crosses so much of a large one.
+  min_occupied_fraction_ =
+      kMinOccupiedFraction * static_cast<float>(finest / resolution);
   const Eigen::Array2d first = (bounds.min() / resolution).array().floor();
   geometry_.resolution = resolution;
   geometry_.T_submap_grid = Rigid2(resolution * first.matrix(), 0.);
@@ -64,8 +68,29 @@ UnionGrid::UnionGrid(const std::vector<GridFootprint>& grids) {
 }
 
 void UnionGrid::Add(const OccupancyGrid& grid, const Rigid2& T_map_submap) {
+  if (!IsUsable(grid.geometry, T_map_submap) || known_.size() == 0) return;
+  if (grid.geometry.resolution < 0.99 * geometry_.resolution) {
+    AddScattered(grid, T_map_submap);
+  } else {
+    AddSampled(grid, T_map_submap);
+  }
+}
+
+void UnionGrid::AddScattered(const OccupancyGrid& grid,
+                             const Rigid2& T_map_submap) {
+  for (int j = 0; j < grid.geometry.size.y(); ++j) {
+    for (int i = 0; i < grid.geometry.size.x(); ++i) {
+      if (!grid.known(i, j)) continue;
+      const Eigen::Array2i cell =
+          geometry_.CellAt(T_map_submap * grid.geometry.CellCentre({i, j}));
+      if (geometry_.Contains(cell)) AddCell(cell, grid.probability(i, j));
+    }
+  }
+}
+
+void UnionGrid::AddSampled(const OccupancyGrid& grid,
+                           const Rigid2& T_map_submap) {
   const CellGeometry& geometry = grid.geometry;
-  if (!IsUsable(geometry, T_map_submap) || known_.size() == 0) return;
   const Eigen::AlignedBox2d bounds = FootprintBounds(geometry, T_map_submap);
   const Eigen::Array2i first = geometry_.CellAt(bounds.min()).max(0);
   const Eigen::Array2i last =
@@ -87,12 +112,16 @@ void UnionGrid::Add(const OccupancyGrid& grid, const Rigid2& T_map_submap) {
       const Eigen::Array2d at = begin + i * along_i;
       const Eigen::Array2i cell = at.floor().cast<int>();
       if (!geometry.Contains(cell) || !grid.known(cell.x(), cell.y())) continue;
-      const float excess = grid.probability(cell.x(), cell.y()) - 0.5f;
-      const float certainty = std::max(std::abs(excess), kMinCertainty);
-      known_(i, j) += certainty;
-      if (excess > 0.f) occupied_(i, j) += certainty;
+      AddCell({i, j}, grid.probability(cell.x(), cell.y()));
     }
   }
+}
+
+void UnionGrid::AddCell(const Eigen::Array2i& cell, const float probability) {
+  const float excess = probability - 0.5f;
+  const float certainty = std::max(std::abs(excess), kMinCertainty);
+  known_(cell.x(), cell.y()) += certainty;
+  if (excess > 0.f) occupied_(cell.x(), cell.y()) += certainty;
 }
 
 std::optional<OccupancyGrid> UnionGrid::Finish() const {
@@ -103,7 +132,7 @@ std::optional<OccupancyGrid> UnionGrid::Finish() const {
     if (known <= 0.f) continue;
     const float fraction = occupied_.data()[k] / known;
     grid.known.data()[k] = true;
-    grid.probability.data()[k] = fraction >= kMinOccupiedFraction
+    grid.probability.data()[k] = fraction >= min_occupied_fraction_
                                      ? std::clamp(fraction, 0.6f, 0.9f)
                                      : std::clamp(fraction, 0.1f, 0.4f);
   }

@@ -36,12 +36,19 @@ class UnionGrid {
   void Add(const OccupancyGrid& grid, const Rigid2& T_map_submap);
 
   // Returns the grid in the map frame; nullopt if nothing is known. A cell is a
-  // wall where at least a third of what is known of it says so: walls that lie
-  // a little apart in several submaps stay closed.
+  // wall where at least half of what is known of it says so, or less where it
+  // is larger than those of the submaps, so that thin walls stay closed.
   [[nodiscard]] std::optional<OccupancyGrid> Finish() const;
 
  private:
+  // One sample for each cell of this grid, or for each of the submap's where
+  // they are smaller.
+  void AddSampled(const OccupancyGrid& grid, const Rigid2& T_map_submap);
+  void AddScattered(const OccupancyGrid& grid, const Rigid2& T_map_submap);
+  void AddCell(const Eigen::Array2i& cell, float probability);
+
   CellGeometry geometry_;
+  float min_occupied_fraction_ = 0.f;
   // Sums over the submaps: of how surely a cell is a wall, and known.
   Eigen::ArrayXXf occupied_;
   Eigen::ArrayXXf known_;

@@ -44,7 +44,7 @@ enum class RunWarning {
   kNotConverged,         // the optimisation ran out of iterations
   kDoubtful,             // audit found doubtful constraints
   kContradictions,       // pairs of submaps of the merged map contradict
-  kSessionsLeftOut,      // merge could not connect some maps
+  kSessionsLeftOut,      // merge left some maps out
   kWindowsNotLocalized,  // of relocalize --num_starts, some of them
   kPlacesNotUsed,        // the file of --places did not fit
   kMapsFailed,           // batch: of the maps, some of them

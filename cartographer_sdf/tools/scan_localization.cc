@@ -79,16 +79,42 @@ void PrintScanResult(const ScanFile& file, const ScanLocalization& result) {
 }
 
 // Refused if any robot was not localised, with the reason of the first.
-void RecordScans(Json results, const size_t num_localized,
-                 RunRecord* const record) {
+void RecordScans(Json results, RunRecord* const record) {
+  size_t num_localized = 0;
+  for (const Json& result : results) {
+    if (result.at("localized").get<bool>()) {
+      ++num_localized;
+    } else if (record->outcome == Outcome::kDone) {
+      record->End(Outcome::kRefused, result.at("reason").get<std::string>());
+    }
+  }
   record->Count("scans", results.size());
   record->Count("scans_localized", num_localized);
-  for (const Json& result : results) {
-    if (result.at("localized").get<bool>()) continue;
-    record->End(Outcome::kRefused, result.at("reason").get<std::string>());
-    break;
-  }
   record->answer["scans"] = std::move(results);
+}
+
+// Prints the results, and writes the report of the single one.
+absl::StatusOr<Json> LocalizeFiles(const Options& options, const MapGrid& map,
+                                   const PanoramaMap& panoramas,
+                                   const std::vector<ScanFile>& files) {
+  Json results = Json::array();
+  for (const ScanFile& file : files) {
+    const std::clock_t begin = std::clock();
+    const ScanLocalization result =
+        LocalizeScans(options.scan_localization, panoramas, file.scans);
+    const double milliseconds =
+        1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    PrintScanResult(file, result);
+    results.push_back({{"scan", file.path}});
+    results.back().update(ToJson(result));
+    results.back()["cpu_milliseconds"] = milliseconds;
+    if (FLAGS_report.empty()) continue;
+    const absl::Status status =
+        WriteScanReport(ReportRequestOfFlags(options), FileName(FLAGS_map),
+                        FileName(file.path), map.grid, file.scans, result);
+    if (!status.ok()) return status;
+  }
+  return results;
 }
 
 }  // namespace
@@ -108,26 +134,10 @@ absl::Status RunScanLocalization(RunRecord* const record) {
     return absl::FailedPreconditionError(absl::StrCat(
         FLAGS_map, " has no wall, or no free space for a robot to stand in"));
   }
-  Json results = Json::array();
-  size_t num_localized = 0;
-  for (const ScanFile& file : *files) {
-    const std::clock_t begin = std::clock();
-    const ScanLocalization result =
-        LocalizeScans(options->scan_localization, *panoramas, file.scans);
-    const double milliseconds =
-        1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    PrintScanResult(file, result);
-    num_localized += result.verdict == LocalizationVerdict::kLocalized;
-    results.push_back({{"scan", file.path}});
-    results.back().update(ToJson(result));
-    results.back()["cpu_milliseconds"] = milliseconds;
-    if (FLAGS_report.empty()) continue;
-    const absl::Status status =
-        WriteScanReport(ReportRequestOfFlags(*options), FileName(FLAGS_map),
-                        FileName(file.path), map->grid, file.scans, result);
-    if (!status.ok()) return status;
-  }
-  RecordScans(std::move(results), num_localized, record);
+  absl::StatusOr<Json> results =
+      LocalizeFiles(*options, *map, *panoramas, *files);
+  if (!results.ok()) return results.status();
+  RecordScans(*std::move(results), record);
   PrintPaths();
   return absl::OkStatus();
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// No option of localising, of drawing places from scans and of looking for
-// folds in merged maps is without effect.
+// No option of localising, by matches and by a scan, of drawing places from
+// scans and of looking for folds in merged maps is without effect.
 
 #include <sstream>
 #include <string>
@@ -12,8 +12,10 @@
 #include "cartographer_sdf/apps/fold_check.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
 #include "gtest/gtest.h"
+#include "test/testing/drawn_map.h"
 #include "test/testing/option_effects.h"
 #include "test/testing/visited_rooms.h"
 
@@ -153,6 +155,35 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfScanPlacesIsWithout) {
          return text.str();
        }}};
   EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
+}
+
+std::string Text(const ScanLocalization& localization) {
+  std::ostringstream text;
+  text.precision(17);
+  text << localization.reason << " " << localization.elsewhere_probability
+       << "\n";
+  for (const ScanCandidate& candidate : localization.candidates) {
+    text << candidate.T_map_robot.translation().transpose() << " "
+         << candidate.probability << "\n";
+  }
+  return text.str();
+}
+
+// A scan with beams of every fate, in two rooms.
+TEST(ScanLocalizationOptionEffectsTest, NoneIsWithout) {
+  const OccupancyGrid grid = testing::TwoRoomsGrid();
+  RobotScan scan = testing::Narrowed(
+      testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3)), 3.5);
+  for (size_t k = 0; k < scan.scan.returns.size() / 6; ++k) {
+    scan.scan.returns[k] *= k % 2 == 0 ? 0.6f : 1.7f;
+  }
+  const std::vector<testing::Scenario<ScanLocalizationOptions>> scenarios = {
+      {"", [&](const ScanLocalizationOptions& options) {
+         const auto map = MakePanoramaMap(options.viewpoints, grid, {});
+         return map ? Text(LocalizeScans(options, *map, {scan})) : "no map";
+       }}};
+  EXPECT_EQ(testing::OptionsWithoutEffect(ScanLocalizationOptions(), scenarios),
+            "");
 }
 
 // The two visits as sessions, of which the second was laid wrong.

@@ -1,15 +1,19 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Text that comes from outside: configurations in Lua, logs, tables, floor
-// plans. Each input is read as all of them; the seeds are of each kind.
+// Text that comes from outside: configurations in Lua, logs, tables, scans,
+// floor plans, and images of maps. Each input is read as all of them; the seeds
+// are of each kind.
 
 #include <string>
 #include <vector>
 
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/evaluation/map_errors.h"
+#include "cartographer_sdf/map_image/grey_image.h"
+#include "cartographer_sdf/map_image/ros_map.h"
 #include "cartographer_sdf/recording/carmen_log.h"
+#include "cartographer_sdf/recording/scan_file.h"
 #include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/truth.h"
@@ -30,6 +34,12 @@ std::vector<std::string> Seeds() {
       "1 2 0.5 0.25 1.5 100.0 200.0\n",
       "P2\n# plan\n3 2\n255\n0 255 0\n255 255 255\n",
       std::string("P5 2 2 255\n\x00\xff\xff\x00", 15),
+      "image: input\nresolution: 0.1\norigin: [0, -1, 0.5]\nnegate: 0\n"
+      "occupied_thresh: 0.65\nfree_thresh: 0.196\nmode: scale\n",
+      "{\"angle_min\": -1, \"angle_increment\": 0.5, \"range_max\": 9,\n"
+      "\"ranges\": [1, 2.5, null, NaN, Infinity], \"sensor\": {\"x\": 0.1}}\n",
+      "[{\"points\": [[1, 2], [3, -4e-1]]}]\n",
+      "angle,range\n0.5,3\n",
       "reference_trajectory,reference_index,query_trajectory,query_index,"
       "accepted,score,x,y,yaw,verdict,inliers,overlap,hit_ratio,"
       "contradiction_ratio\n0,1,0,5,1,2.5,1,2,3,accepted,4,0.5,0.5,0.1\n"};
@@ -48,5 +58,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* const data,
   (void)ReadRelations(path);
   (void)ReadMatches(path);
   (void)ReadPgm(path, 0.05);
+  (void)ReadPngImage(path);
+  (void)ReadScanFile(path);
+  (void)ReadRosMap(fuzz::WriteInput(
+      "input.yaml", std::string(reinterpret_cast<const char*>(data), size)));
   return 0;
 }

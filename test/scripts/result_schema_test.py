@@ -85,7 +85,14 @@ class ResultSchemaTest(unittest.TestCase):
         self.check("refused", 3, "relocalize", a, c, "--fail_on", "refused")
         self.check("refused", 3, "relocalize", a, c, "-o", self.file("x.pbstream"))
         self.check("done", 0, "relocalize", a, b, "--first_seconds", "40", "--num_starts", "2")
-        self.check("done", 0, "merge", a, b, c, "-o", self.file("merged.pbstream"))
+        scan = pathlib.Path(self.file("scan.json"))
+        scan.write_text(json.dumps({"angle_min": 0., "angle_increment": 0.0175, "range_max": 30.,
+                                    "ranges": [0.3 + 0.002 * k for k in range(359)]}))
+        content = self.check("refused", 0, "relocalize", a, "--scan", scan)
+        self.assertEqual(len(content["scans"]), 1)
+        content = self.check("done", 0, "merge", a, b, c, "-o", self.file("merged.pbstream"))
+        self.assertEqual([bool(session["left_out"]) for session in content["sessions"]],
+                         [False, False, True])
         self.check("refused", 3, "merge", a, c, "-o", self.file("x.pbstream"))
         self.check("done", 0, "audit", closed)
         self.check("nothing", 0, "audit", a)

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+#include "cartographer_sdf/localization/panorama_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gtest/gtest.h"
+#include "test/testing/drawn_map.h"
+
+namespace cartographer_sdf::panorama_search_test {
+namespace {
+
+constexpr double kResolution = 0.05;
+
+class PanoramaSearchTest : public ::testing::Test {
+ protected:
+  PanoramaSearchTest() : map_(*MakeRayMap(testing::TwoRoomsGrid())) {
+    viewpoints_ = MakeViewpoints({}, map_, ReachableCells(map_, 0.15, {}));
+  }
+  [[nodiscard]] std::vector<Rigid2> Search(const RobotScan& scan,
+                                           const size_t max_num_poses) const {
+    std::vector<Rigid2> poses =
+        SearchPanoramas(viewpoints_, kResolution,
+                        MakeSweep({scan}, kNumDirections, 60.), max_num_poses);
+    for (Rigid2& pose : poses) pose = map_.geometry().T_submap_grid * pose;
+    return poses;
+  }
+  RayMap map_;
+  Viewpoints viewpoints_;
+};
+
+TEST_F(PanoramaSearchTest, TheRightPoseIsAmongTheFirst) {
+  for (const Rigid2& truth : {Rigid2(2., 1.7, 0.3), Rigid2(12.2, 3.1, 1.)}) {
+    const std::vector<Rigid2> poses =
+        Search(testing::ScanFrom(testing::TwoRooms(), truth), 5);
+    EXPECT_TRUE(std::any_of(poses.begin(), poses.end(), [&](const Rigid2& p) {
+      return (p.translation() - truth.translation()).norm() < 0.4 &&
+             std::abs(NormalizeAngle(p.rotation() - truth.rotation())) < 0.1;
+    })) << truth;
+  }
+}
+
+TEST_F(PanoramaSearchTest, SensorsBesideTheCentreOfTheRobotAreNoMatter) {
+  const Rigid2 truth(2., 1.7, 0.3), T_robot_sensor(0.8, -0.3, 1.2);
+  RobotScan scan =
+      testing::ScanFrom(testing::TwoRooms(), truth * T_robot_sensor);
+  scan.T_robot_sensor = T_robot_sensor;
+  const Rigid2 best = Search(scan, 1).at(0);
+  EXPECT_LT((best.translation() - truth.translation()).norm(), 0.4);
+  EXPECT_LT(std::abs(NormalizeAngle(best.rotation() - truth.rotation())), 0.1);
+}
+
+TEST_F(PanoramaSearchTest, FewerPosesAreTheFirstOfMore) {
+  const RobotScan scan =
+      testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3));
+  const std::vector<Rigid2> many = Search(scan, 50), few = Search(scan, 10);
+  ASSERT_EQ(few.size(), 10u);
+  ASSERT_GT(many.size(), few.size());
+  for (size_t k = 0; k < few.size(); ++k) {
+    EXPECT_EQ(few[k].translation(), many[k].translation());
+    EXPECT_EQ(few[k].rotation(), many[k].rotation());
+  }
+}
+
+TEST_F(PanoramaSearchTest, NothingIsFoundWithoutBeamsOrPlaces) {
+  EXPECT_TRUE(Search(RobotScan(), 10).empty());
+  const Sweep sweep =
+      MakeSweep({testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3))},
+                kNumDirections, 60.);
+  EXPECT_TRUE(SearchPanoramas(Viewpoints(), kResolution, sweep, 10).empty());
+}
+
+}  // namespace
+}  // namespace cartographer_sdf::panorama_search_test
