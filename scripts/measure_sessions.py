@@ -6,7 +6,7 @@
 usage: measure_sessions.py [--program build/cartographer_sdf] [--data ../shared/data]
                            [--work DIRECTORY] [--output FILE] [--threads N] [PART ...]
 
-Parts: whole, windows, buildings, halves, twins, sessions; all if none is named.
+Parts: whole, merges, windows, buildings, halves, twins, sessions; all if none is named.
 What the directory of --work holds already is not measured again. The maps are no
 part of the project; see CONTRIBUTING.md.
 """
@@ -26,6 +26,26 @@ HERE = pathlib.Path(__file__).resolve().parent
 # Wrong: a pose that is off by more where the submaps meet.
 WRONG_METERS, WRONG_DEGREES = 1., 10.
 NUM_STARTS = 20
+# Maps that show the same building, or two that look alike; each pair is asked in both orders.
+PAIRS = [("willow_1", "willow_2"), ("tsc_2016", "tsc_2017"), ("labc_bare1", "labc_furn"),
+         ("labc_bare1", "labc_d3a"), ("labc_furn", "labc_d3a"), ("fhw_1", "fhw_2"),
+         ("officec_R", "officec_L"), ("field/twins3_1", "field/twins3_2"),
+         ("field/floor_4", "field/floor_6"), ("tinyslam_exp1", "tinyslam_exp2"),
+         ("tinyslam_exp1", "tinyslam_exp3"), ("tinyslam_exp1", "tinyslam_exp4"),
+         ("tinyslam_exp2", "tinyslam_exp3"), ("tinyslam_exp3", "tinyslam_exp4"),
+         ("field/hall_office_1", "field/hall_office_2"),
+         ("field/hall_office_1", "field/hall_office_3"),
+         ("field/hall_office_2", "field/hall_office_3"), ("field/track_hall_1", "field/track_hall_2"),
+         ("field/track_moved_1", "field/track_moved_2"), ("field/arena_2", "user_map_arena"),
+         ("field/bare_corner", "field/hall_office_2"), ("field/bare_corner", "field/arena_2"),
+         ("field/cells_10cm", "field/cells_20cm")]
+MERGES = [("tsc_2016", "tsc_2017"), ("labc_bare1", "labc_d3a"), ("fhw_1", "fhw_2"),
+          ("field/hall_office_1", "field/hall_office_2", "field/hall_office_3"),
+          ("field/track_hall_1", "field/track_hall_2"),
+          ("field/track_moved_1", "field/track_moved_2"),
+          ("tinyslam_exp1", "tinyslam_exp2", "tinyslam_exp3", "tinyslam_exp4"),
+          ("officec_R", "officec_L"), ("officec_L", "officec_R"),
+          ("field/arena_2", "field/bare_corner"), ("field/bare_corner", "field/arena_2")]
 
 
 def compose(a, b):
@@ -67,6 +87,9 @@ class Measurement:
     def truth(self, name):
         return read_truth(self.data / (name + ".truth.csv"))
 
+    def has_truth(self, *names):
+        return all((self.data / (name + ".truth.csv")).exists() for name in names)
+
     def run(self, *arguments, may_fail=False):
         done = subprocess.run([self.program, *arguments, "--threads", str(self.threads)],
                               capture_output=True, text=True)
@@ -75,11 +98,11 @@ class Measurement:
         return done
 
     def relocalize(self, map_name, query_name, *more):
-        name = "_".join([map_name, query_name] + [m.strip("-") for m in more])
+        name = "_".join([map_name, query_name] + [m.strip("-") for m in more]).replace("/", "_")
         result = self.work / (name + ".json")
         if not result.exists():
             self.run("relocalize", "--map", self.map(map_name), "--query", self.map(query_name),
-                     "--places", str(self.work / (map_name + ".places")),
+                     "--places", str(self.work / (map_name.replace("/", "_") + ".places")),
                      "--result", str(result), *more)
         return json.loads(result.read_text())
 
@@ -107,22 +130,45 @@ def is_wrong(errors):
 def measure_whole(m):
     m.say("## Whole sessions\n")
     m.say("`relocalize --map A --query B`. Errors are those of the agreeing matches against the truth, in the "
-          "query submap's frame.\n")
-    m.say("| query in map | answer | agreeing | contradicting | score | runner-up | error: median | 90 % | max "
-          "| ms after loading |")
-    m.say("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
-    for reference, query in (("willow_1", "willow_2"), ("willow_2", "willow_1")):
+          "query submap's frame, where both maps have one.\n")
+    m.say("| query in map | answer | pose [m, deg] | agreeing | contradicting | score | runner-up "
+          "| error: median | 90 % | max | ms after loading |")
+    m.say("| --- " * 11 + "|")
+    for reference, query in [pair for a, b in PAIRS for pair in ((a, b), (b, a))]:
         result = m.relocalize(reference, query)
-        errors = m.errors(result, m.truth(reference), m.truth(query), "submap")
+        errors = []
+        if m.has_truth(reference, query):
+            errors = m.errors(result, m.truth(reference), m.truth(query), "submap")
         meters, degrees = [e[0] for e in errors], [e[1] for e in errors]
-        answer = "none: " + result["verdict"]
+        answer, pose = result["verdict"], ""
         if result["localized"]:
-            answer = "WRONG" if is_wrong(errors) else "right"
-        m.say("| %s in %s | %s | %d | %d | %s | %s | %s | %.0f |" % (
-            query, reference, answer, result["agreeing"], result["contradicting"], result["score"],
-            result["runner_up_score"],
-            " | ".join("%.3f m, %.2f deg" % (quantile(meters, q), quantile(degrees, q))
-                       for q in (0.5, 0.9, 1.)), sum(result["milliseconds"].values())))
+            answer = "WRONG" if is_wrong(errors) else "right" if errors else "no truth"
+            pose = "%.2f, %.2f, %.1f" % (result["T_map_query"]["x"], result["T_map_query"]["y"],
+                                         math.degrees(result["T_map_query"]["yaw"]))
+        quantiles = ["%.3f m, %.2f deg" % (quantile(meters, q), quantile(degrees, q))
+                     if errors and result["localized"] else "" for q in (0.5, 0.9, 1.)]
+        scores = ["" if result[name] is None else "%.1f" % result[name]
+                  for name in ("score", "runner_up_score")]
+        m.say("| %s in %s | %s | %s | %d | %d | %s | %s | %.0f |" % (
+            query, reference, answer, pose, result["agreeing"], result["contradicting"],
+            " | ".join(scores), " | ".join(quantiles), sum(result["milliseconds"].values())))
+    m.say()
+
+
+def measure_merges(m):
+    m.say("## Merges\n")
+    m.say("| maps | merged | left out | contradicting of overlapping pairs |")
+    m.say("| --- | --- | --- | --- |")
+    for names in MERGES:
+        result = m.work / ("merge_" + "_".join(names).replace("/", "_") + ".json")
+        m.run("merge", "--inputs", ",".join(map(m.map, names)), "--output",
+              str(m.work / "merged.pbstream"), "--result", str(result), may_fail=True)
+        found = json.loads(result.read_text())
+        left_out = [name for name, session in zip(names, found["sessions"]) if session["left_out"]]
+        m.say("| %s | %s | %s | %d of %d |" % (
+            ", ".join(names), "yes" if found["merged"] else "no: " + found["reason"].replace(
+                str(m.data) + "/", ""), ", ".join(left_out), found["contradicting_pairs"],
+            found["overlapping_pairs"]))
     m.say()
 
 
@@ -264,7 +310,7 @@ def measure_sessions(m):
     m.say("```\n%s%s```\n" % (done.stdout.replace(str(m.work) + "/", ""), done.stderr))
 
 
-PARTS = {"whole": measure_whole, "windows": measure_windows, "buildings": measure_buildings,
+PARTS = {"whole": measure_whole, "merges": measure_merges, "windows": measure_windows, "buildings": measure_buildings,
          "halves": measure_halves, "twins": measure_twins, "sessions": measure_sessions}
 
 

@@ -13,7 +13,7 @@ namespace {
 // Of map_saver; map_server knows them again by the thresholds below.
 constexpr char kOccupied = 0;
 constexpr char kFree = static_cast<char>(254);
-constexpr char kUnknown = static_cast<char>(205);
+constexpr char kUnknownGrey = static_cast<char>(205);
 
 // YAML reads a name in double quotes with the escapes of C.
 std::string QuoteYaml(const std::string& text) {
@@ -37,7 +37,7 @@ RosMap MakeRosMap(const MapPainter& painter, const std::string& image) {
   for (int y = 0; y < size.y(); ++y) {
     for (int x = 0; x < size.x(); ++x) {
       const std::optional<double> excess = painter.ExcessAt(x, y);
-      map.pgm += !excess ? kUnknown : *excess > 0. ? kOccupied : kFree;
+      map.pgm += !excess ? kUnknownGrey : *excess > 0. ? kOccupied : kFree;
       ++(!excess        ? map.num_unknown
          : *excess > 0. ? map.num_occupied
                         : map.num_free);

@@ -32,7 +32,8 @@ TEST(MapGridTest, IsFreeWhereTheRobotDrove) {
     num_free += grid.known(cell.x(), cell.y()) &&
                 grid.probability(cell.x(), cell.y()) < 0.5f;
   }
-  EXPECT_GT(num_free, 0.95 * map->driven_positions.size());
+  EXPECT_GT(static_cast<double>(num_free),
+            0.95 * static_cast<double>(map->driven_positions.size()));
 }
 
 TEST(MapGridTest, FailsWithoutSubmaps) {
