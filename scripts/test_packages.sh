@@ -93,7 +93,7 @@ if "${builds}"; then
   mount -t proc proc "${ROOT}/proc"
   mkdir "${ROOT}/source"
   git -C "${SOURCE_DIR}" ls-files -z |
-    tar --create --null --files-from - --directory "${SOURCE_DIR}" | tar --extract --directory "${ROOT}/source"
+    tar --create --directory "${SOURCE_DIR}" --null --files-from - | tar --extract --directory "${ROOT}/source"
   COMMIT="$(git -C "${SOURCE_DIR}" describe --always --dirty --abbrev=12)"
   shown env BUILD_DIR=/build "CMAKE_OPTIONS=-DCARTOGRAPHER_SDF_COMMIT=${COMMIT}" \
     /source/scripts/make_packages.sh /packages >"${WORK_DIR}/build.log" 2>&1 ||
