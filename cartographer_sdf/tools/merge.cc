@@ -69,8 +69,8 @@ void RecordMerging(const MergingResult& result, RunRecord* const record) {
   record->Count("contradicting_pairs", result.contradictions.size());
   if (num_left_out > 0) {
     record->Warn(RunWarning::kSessionsLeftOut,
-                 absl::StrFormat("%d of %d maps are not in the merged map",
-                                 num_left_out, result.sessions.size()));
+                 absl::StrFormat("%d of %d maps are left out", num_left_out,
+                                 result.sessions.size()));
   }
   if (!result.contradictions.empty()) {
     record->Warn(RunWarning::kContradictions,
