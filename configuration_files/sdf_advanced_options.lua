@@ -462,21 +462,21 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Which of the candidates is the right one. Learned by
     -- scripts/measure_scan_localization.py, as those below.
     candidate_weights = {
-      fit = 27.2,
-      loose_fit = -26.,
-      log_through = -3.,
-      log_free = -2.4,
-      in_unknown = -14.7,
+      fit = 31.8,
+      loose_fit = -16.5,
+      log_through = -1.98,
+      log_free = -0.92,
+      in_unknown = -4.1,
     },
     -- Whether the right pose is among the candidates at all.
     presence_weights = {
-      loose_fit = -20.4,
-      log_through = -1.52,
-      log_free = -0.47,
-      in_unknown = -8.6,
-      num_beams = 4.9,
-      lead = 19.4,
-      bias = -7.6,
+      loose_fit = -19.3,
+      log_through = -1.71,
+      log_free = -0.34,
+      in_unknown = -7.85,
+      num_beams = 1.88,
+      lead = 24.3,
+      bias = -7.5,
     },
   },
   -- Detection of merged maps that fold over each other (merge).

@@ -442,13 +442,13 @@ def presence_terms(candidates):
 
 
 def learn(judged):
-    """Maximum likelihood by Newton's method; each set counts the same, strangers three fifths."""
+    """Maximum likelihood by Newton's method; each set counts the same."""
     import numpy as np
     samples = []
     for s, rows in judged:
         usable = [r for r in rows if len(r["result"]["candidates"]) > 0
                   and (r["right"] is not None or r["wrong"])]
-        weight = (.6 if s.kind == "stranger" else 1.) / max(1, len(usable))
+        weight = 1. / max(1, len(usable))
         samples += [(r["result"]["candidates"], r["right"], weight) for r in usable]
 
     def descend(size, scale, derivatives):

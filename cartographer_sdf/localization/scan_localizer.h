@@ -30,25 +30,25 @@ namespace cartographer_sdf {
 // those below, are learned on scans of several buildings in their own map and
 // in others'; see scripts/measure_scan_localization.py.
 struct CandidateWeights {
-  double fit = 27.2;          // BeamEvidence::fit
-  double loose_fit = -26.;    // echoes near a wall, less their fit
-  double log_through = -3.;   // ln(0.03 + beams through walls)
-  double log_free = -2.4;     // ln(0.03 + echoes in free space)
-  double in_unknown = -14.7;  // beams that end in unknown space
+  double fit = 31.8;           // BeamEvidence::fit
+  double loose_fit = -16.5;    // echoes near a wall, less their fit
+  double log_through = -1.98;  // ln(0.03 + beams through walls)
+  double log_free = -0.92;     // ln(0.03 + echoes in free space)
+  double in_unknown = -4.1;    // beams that end in unknown space
 };
 [[nodiscard]] std::string Validate(const CandidateWeights& weights);
 
 // Whether the right pose is among the candidates: the log-odds of it are the
 // sum of these terms, of the best candidate.
 struct PresenceWeights {
-  double loose_fit = -20.4;
-  double log_through = -1.52;
-  double log_free = -0.47;
-  double in_unknown = -8.6;
-  double num_beams = 4.9;  // in turns, of one beam per degree
+  double loose_fit = -19.3;
+  double log_through = -1.71;
+  double log_free = -0.34;
+  double in_unknown = -7.85;
+  double num_beams = 1.88;  // in turns, of one beam per degree
   // How much better it fits than what fits by chance: the sixth best candidate.
-  double lead = 19.4;
-  double bias = -7.6;
+  double lead = 24.3;
+  double bias = -7.5;
 };
 [[nodiscard]] std::string Validate(const PresenceWeights& weights);
 
