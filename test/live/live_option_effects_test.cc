@@ -114,7 +114,7 @@ std::string Recognize(const LiveOptions& options) {
 std::string Locate(const LiveOptions& options) {
   constexpr int kTrajectory = 5;
   BackgroundSearch search(options);
-  MapLayout layout{{}, {}, DrivenDistances({}, {})};
+  MapLayout layout{{}, {}, {}, DrivenDistances({}, {})};
   PoseGraph graph;
   std::map<SubmapId, OdometryPose> odometry;
   for (const SeenSubmap& seen : {Seen()[0], Seen()[1]}) {
