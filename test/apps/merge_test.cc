@@ -52,13 +52,16 @@ class MergingTest : public ::testing::Test {
   static std::string Again() { return directory_->File("again.pbstream"); }
   static std::string Rebuilt() { return directory_->File("rebuilt.pbstream"); }
 
-  // Takes look-alikes for the same building, whatever contradicts it there.
+  // Takes look-alikes for the same building, whatever contradicts it there, and
+  // a third of it that was rebuilt for a fold, as little as it contradicts.
   static MergingResult MergeCredulously(const std::vector<std::string>& paths) {
     LocalizationOptions credulous;
     credulous.placement.max_contradicting_fraction = 1.;
     credulous.placement.min_score = 1.;
+    FoldCheckOptions strict;
+    strict.max_contradiction_ratio = 0.05;
     absl::StatusOr<MergingResult> result = MergeSessions(
-        FoldCheckOptions(), credulous, ScanPlaceOptions(), LoopClosingOptions(),
+        strict, credulous, ScanPlaceOptions(), LoopClosingOptions(),
         {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
     CHECK(result.ok()) << result.status();
     return *std::move(result);
