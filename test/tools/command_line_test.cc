@@ -121,7 +121,7 @@ TEST(CommandLineTest, TooMuchIsAnError) {
               HasSubstr("unexpected argument 'b'"));
   EXPECT_THAT(ErrorOf("simulate", {"a"}), HasSubstr("unexpected argument 'a'"));
   EXPECT_THAT(ErrorOf("merge", {"a", ""}), HasSubstr("unexpected argument ''"));
-  EXPECT_THAT(ErrorOf("relocalize", {"a"}), HasSubstr("--query is missing"));
+  EXPECT_THAT(ErrorOf("close_loops", {"a"}), HasSubstr("--output is missing"));
 }
 
 TEST(PathListTest, JoinsWhatItSplits) {
