@@ -459,6 +459,9 @@ SDF_GLOBAL_CONSTRAINTS = {
     min_num_beams = 30,
     -- [m] Farther echoes are left out.
     max_range_meters = 60.,
+    -- Least probability of a pose that is certain. Larger: fewer answers, fewer
+    -- wrong ones.
+    min_probability = 0.99,
     -- Which of the candidates is the right one. Learned by
     -- scripts/measure_scan_localization.py, as those below.
     candidate_weights = {

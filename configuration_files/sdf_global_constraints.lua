@@ -77,10 +77,6 @@ placement.min_lead = 4.
 -- [m] Cell size of grids drawn from scans; use that of the map.
 SDF_GLOBAL_CONSTRAINTS.scan_places.resolution_meters = 0.05
 
--- Least probability of the pose of a robot that stands still, by one scan
--- (relocalize --scan). Larger: fewer answers, fewer wrong ones.
-SDF_GLOBAL_CONSTRAINTS.scan_localization.min_probability = 0.99
-
 -- Largest fraction of the overlapping pairs of submaps that may contradict each
 -- other in a merged map; with more, the map is considered folded and is
 -- refused. Larger: tolerates more change between the maps.

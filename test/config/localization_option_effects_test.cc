@@ -169,21 +169,52 @@ std::string Text(const ScanLocalization& localization) {
   return text.str();
 }
 
-// A scan with beams of every fate, in two rooms.
+// In two rooms.
+std::string LocateScan(const ScanLocalizationOptions& options,
+                       const OccupancyGrid& grid, const RobotScan& scan) {
+  const auto map = MakePanoramaMap(options.viewpoints, grid, {});
+  return map ? Text(LocalizeScans(options, *map, {scan})) : "no map";
+}
+
 TEST(ScanLocalizationOptionEffectsTest, NoneIsWithout) {
   const OccupancyGrid grid = testing::TwoRoomsGrid();
-  RobotScan scan = testing::Narrowed(
-      testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3)), 3.5);
-  for (size_t k = 0; k < scan.scan.returns.size() / 6; ++k) {
-    scan.scan.returns[k] *= k % 2 == 0 ? 0.6f : 1.7f;
+  const RobotScan all =
+      testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3));
+  // Some beams cross walls, and some end in free space.
+  RobotScan disturbed = testing::Narrowed(all, 3.5);
+  for (size_t k = 0; k < disturbed.scan.returns.size() / 6; ++k) {
+    disturbed.scan.returns[k] *= k % 2 == 0 ? 0.6f : 1.7f;
+  }
+  // Nobody has seen the wall at the right of the west room.
+  OccupancyGrid without_wall = grid;
+  for (int i = 0; i < grid.geometry.size.x(); ++i) {
+    if (grid.geometry.CellCentre({i, 0}).x() > 6.3) {
+      without_wall.known.row(i).setConstant(false);
+    }
   }
   const std::vector<testing::Scenario<ScanLocalizationOptions>> scenarios = {
-      {"", [&](const ScanLocalizationOptions& options) {
-         const auto map = MakePanoramaMap(options.viewpoints, grid, {});
-         return map ? Text(LocalizeScans(options, *map, {scan})) : "no map";
+      {"",
+       [&](const ScanLocalizationOptions& options) {
+         return LocateScan(options, grid, disturbed);
+       }},
+      {"min_num_beams",
+       [&](const ScanLocalizationOptions& options) {
+         return LocateScan(options, grid, testing::Narrowed(all, 0.8));
+       }},
+      {"presence_weights.in_unknown",
+       [&](const ScanLocalizationOptions& options) {
+         return LocateScan(options, without_wall, all);
+       }},
+      // Something is there with the probability .73, and then it is certain
+      // where.
+      {"min_probability", [&](const ScanLocalizationOptions& options) {
+         ScanLocalizationOptions half_sure = options;
+         half_sure.presence_weights = {0., 0., 0., 0., 0., 0., 1.};
+         return LocateScan(half_sure, grid, all);
        }}};
-  EXPECT_EQ(testing::OptionsWithoutEffect(ScanLocalizationOptions(), scenarios),
-            "");
+  ScanLocalizationOptions base;
+  base.min_probability = 0.6;
+  EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
 }
 
 // The two visits as sessions, of which the second was laid wrong.
