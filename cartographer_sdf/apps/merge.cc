@@ -395,6 +395,8 @@ absl::StatusOr<MergingResult> MergeSessions(
     SessionJoiner joiner(options, stages, std::move(pointers),
                          frozen_trajectories, executor, &clock);
     JoinGroup(group, !frozen_trajectories.empty(), &joiner, &result);
+  } else {
+    ExplainLeftOut({}, &result);
   }
   clock.End();
   return result;

@@ -226,6 +226,12 @@ TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
   expect_error({"merge", "--inputs", map + "," + offices_->Elsewhere(),
                 "--output", File("x")},
                3, "no two of the maps are connected");
+  EXPECT_THAT(
+      RunTestProgram({"merge", "--inputs", map + "," + offices_->Elsewhere(),
+                      "--output", File("x")})
+          .output,
+      HasSubstr("NOT in the merged map: not connected with the other "
+                "maps"));
   // Maps without a flag, in any number.
   expect_error({"merge", map, offices_->Elsewhere(), "-o", File("x")}, 3,
                "no two of the maps are connected");
