@@ -395,9 +395,9 @@ SDF_GLOBAL_CONSTRAINTS = {
   localization = {
     -- When a pose in the map is certain.
     placement = {
-      -- [m] Submaps closer together than this, or than the diameter of what
-      -- they show, count partly as the same evidence. Larger: more must be
-      -- seen.
+      -- [m] Submaps count as evidence as far as they show ground that others do
+      -- not: a disc of what they show, at least of this diameter. Larger: more
+      -- must be seen.
       independent_distance_meters = 10.,
       -- Largest contribution of one match (log-odds).
       max_place_score = 10.,

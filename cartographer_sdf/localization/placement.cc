@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -119,8 +121,34 @@ std::vector<std::vector<size_t>> GroupVotes(const VerdictTable& votes) {
   return groups;
 }
 
+// Ground that places show, as tiles of a square metre: each shows a disc.
+class ShownGround {
+ public:
+  // Adds a disc; returns the fraction of it that was not shown before.
+  double Add(const Eigen::Vector2d& centre, const double diameter) {
+    const double radius = 0.5 * diameter;
+    const auto size = static_cast<int64_t>(std::ceil(diameter)) + 1;
+    const auto first_x = static_cast<int64_t>(std::floor(centre.x() - radius));
+    const auto first_y = static_cast<int64_t>(std::floor(centre.y() - radius));
+    int num_tiles = 0, num_new = 0;
+    for (int64_t x = first_x; x < first_x + size; ++x) {
+      for (int64_t y = first_y; y < first_y + size; ++y) {
+        const Eigen::Vector2d tile(static_cast<double>(x) + 0.5,
+                                   static_cast<double>(y) + 0.5);
+        if ((tile - centre).norm() > radius) continue;
+        ++num_tiles;
+        num_new += tiles_.emplace(x, y).second;
+      }
+    }
+    return num_tiles == 0 ? 1. : static_cast<double>(num_new) / num_tiles;
+  }
+
+ private:
+  std::set<std::pair<int64_t, int64_t>> tiles_;
+};
+
 // Sums the evidence of distinct places: each place of the query counts by its
-// votes, and less if a better one is near.
+// votes, as far as better ones do not show the same ground.
 double ScoreOf(const PlacementOptions& options, const MapPair& maps,
                const std::vector<PairPose>& closures,
                const std::vector<size_t>& votes) {
@@ -139,19 +167,14 @@ double ScoreOf(const PlacementOptions& options, const MapPair& maps,
   std::vector<std::pair<double, SubmapId>> order;
   for (const auto& [id, score] : scores) order.emplace_back(-score, id);
   std::sort(order.begin(), order.end());
-  std::vector<Eigen::Vector2d> counted;
+  ShownGround ground;
   double sum = 0.;
   for (const auto& [negative_score, id] : order) {
-    const Eigen::Vector2d position =
-        maps.query->T_map_submap.at(id) * maps.query->centroids.at(id);
-    const double independent = std::max(options.independent_distance_meters,
-                                        maps.query->diameters.at(id));
-    double distance = independent;
-    for (const Eigen::Vector2d& other : counted) {
-      distance = std::min(distance, (position - other).norm());
-    }
-    counted.push_back(position);
-    sum += -negative_score * distance / independent;
+    const double diameter = std::max(options.independent_distance_meters,
+                                     maps.query->diameters.at(id));
+    sum += -negative_score * ground.Add(maps.query->T_map_submap.at(id) *
+                                            maps.query->centroids.at(id),
+                                        diameter);
   }
   return sum;
 }

@@ -27,8 +27,8 @@
 namespace cartographer_sdf {
 
 struct PlacementOptions {
-  // Places of the query nearer together than this, or than the diameter of what
-  // they show, are partly redundant, in proportion to their distance [m].
+  // A place of the query counts as far as no better one shows the same ground:
+  // a disc of the area that it shows, at least of this diameter [m].
   double independent_distance_meters = 10.;
   // Largest score that counts for one match, however certain it seems;
   // log-odds.

@@ -86,8 +86,8 @@ TEST_F(PlacementTest, PlacesNearEachOtherTellPartlyTheSame) {
   const std::vector<Placement> placements =
       FindPlacements(map_, query, closures);
   ASSERT_THAT(placements, SizeIs(1));
-  // A quarter of the second.
-  EXPECT_NEAR(placements[0].score, 6. + 0.25 * 4., 1e-9);
+  // What two discs share, a quarter of their diameter apart, to a few tiles.
+  EXPECT_NEAR(placements[0].score, 6. + 0.315 * 4., 0.15);
 }
 
 TEST_F(PlacementTest, OnePlaceCountsSoMuchAtMost) {
@@ -124,7 +124,26 @@ TEST_F(PlacementTest, PlacesThatShowTheSameHallAreOne) {
   for (auto& [id, diameter] : query_layout.diameters) {
     diameter = 4. * kSpacing;
   }
-  EXPECT_NEAR(score(), 6. + 5. / 4., 1e-9);
+  EXPECT_NEAR(score(), 6. + 0.315 * 5., 0.05);
+}
+
+TEST_F(PlacementTest, ManyPlacesOfOneHallAreNotMore) {
+  // Ten within 9 m, each next to others.
+  MapState query;
+  testing::AddStraightDrive(0, T_query_way_, 10, 1., &query);
+  std::vector<PairPose> closures;
+  for (int k = 0; k < 10; ++k) {
+    closures.push_back(PairOnWay({0, 0}, {0, k}, 1., 0., 5.));
+  }
+  const MapLayout map_layout = Layout(map_);
+  MapLayout query_layout = Layout(query);
+  for (auto& [id, diameter] : query_layout.diameters) diameter = 40.;
+  const std::vector<Placement> placements =
+      cartographer_sdf::FindPlacements(PlacementOptions(), ConsistencyOptions(),
+                                       {&map_layout, &query_layout}, closures);
+  ASSERT_THAT(placements, SizeIs(1));
+  // The union of all discs: one, and a strip of 9 m by its diameter.
+  EXPECT_NEAR(placements[0].score, 5. * (1. + 9. * 40. / (M_PI * 400.)), 0.1);
 }
 
 TEST_F(PlacementTest, LookAlikesAreRivals) {
