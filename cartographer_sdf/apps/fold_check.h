@@ -53,9 +53,9 @@ struct MergingFault {
 };
 
 // Returns none if the merged map is not folded; otherwise the reason is a
-// sentence with an example, and at fault is the session of the folded pair
-// whose submaps contradict others most often. Each pair of sessions is judged
-// separately: a long map that agrees with itself must not outweigh the
+// sentence with an example, and at fault is the session of the folded pair that
+// is folded with more others, on ties the later. Each pair of sessions is
+// judged separately: a long map that agrees with itself must not outweigh the
 // contradictions of a short one.
 [[nodiscard]] std::optional<MergingFault> FindFold(
     const FoldCheckOptions& options,

@@ -43,6 +43,16 @@ bool IsCertain(const SessionLink& link) {
   return link.localization.verdict == LocalizationVerdict::kLocalized;
 }
 
+// For each session, the lowest index of those that certain links connect.
+std::vector<size_t> GroupSessions(const size_t num_sessions,
+                                  const std::vector<SessionLink>& links) {
+  std::vector<size_t> groups = SingleGroups(num_sessions);
+  for (const SessionLink& link : links) {
+    if (IsCertain(link)) JoinGroups(link.first, link.second, &groups);
+  }
+  return groups;
+}
+
 // Returns (first of the group <- session) for the sessions of a group, along
 // the most certain links, without those in `left_out`.
 std::map<size_t, Rigid2> PlaceSessions(
@@ -379,10 +389,7 @@ absl::StatusOr<MergingResult> MergeSessions(
   if (!sessions.ok()) return sessions.status();
   result.links =
       LinkSessions(localization, stages, *sessions, executor, &clock);
-  std::vector<size_t> groups = SingleGroups(sessions->size());
-  for (const SessionLink& link : result.links) {
-    if (IsCertain(link)) JoinGroups(link.first, link.second, &groups);
-  }
+  const std::vector<size_t> groups = GroupSessions(paths.size(), result.links);
   for (size_t k = 0; k < paths.size(); ++k) {
     result.sessions.push_back({paths[k], groups[k], {}, ""});
   }

@@ -124,7 +124,8 @@ std::vector<std::vector<size_t>> GroupVotes(const VerdictTable& votes) {
 // Ground that places show, as tiles of a square metre: each shows a disc.
 class ShownGround {
  public:
-  // Adds a disc; returns the fraction of it that was not shown before.
+  // Adds a disc; returns the fraction of it that was not shown before. A disc
+  // that holds the middle of no tile counts as new.
   double Add(const Eigen::Vector2d& centre, const double diameter) {
     const double radius = 0.5 * diameter;
     const auto size = static_cast<int64_t>(std::ceil(diameter)) + 1;

@@ -67,34 +67,35 @@ double PresenceProbability(const PresenceWeights& weights,
   return 1. / (1. + std::exp(-log_odds));
 }
 
+// What a pose of the robot in the grid explains.
+struct MeasuredSweep {
+  RegisteredSweep registered;
+  BeamEvidence evidence;
+  double utility;
+};
+
 // Registers poses of the robot in the grid and returns the best distinct ones.
-std::vector<ScanCandidate> RegisterAll(const CandidateWeights& weights,
-                                       const RayMap& map, const Sweep& sweep,
-                                       const size_t num_beams,
-                                       const double kernel_scale,
-                                       const std::vector<Rigid2>& poses) {
-  std::vector<std::pair<double, ScanCandidate>> registered;
-  for (const Rigid2& pose : poses) {
-    const std::optional<RegisteredSweep> found =
-        RegisterSweep(map.field, sweep, num_beams, kernel_scale, pose);
-    if (!found) continue;
-    ScanCandidate candidate;
-    candidate.T_map_robot = found->T_grid_robot;
-    candidate.covariance = found->covariance;
-    candidate.evidence = MeasureBeams(map, sweep, found->T_grid_robot);
-    registered.emplace_back(Utility(weights, candidate.evidence), candidate);
+std::vector<MeasuredSweep> RegisterAll(
+    const CandidateWeights& weights, const RayMap& map, const Sweep& sweep,
+    const size_t num_beams, const double kernel_scale,
+    const std::vector<Rigid2>& T_grid_robot) {
+  std::vector<MeasuredSweep> measured;
+  for (const Rigid2& guess : T_grid_robot) {
+    const std::optional<RegisteredSweep> registered =
+        RegisterSweep(map.field, sweep, num_beams, kernel_scale, guess);
+    if (!registered) continue;
+    const BeamEvidence evidence =
+        MeasureBeams(map, sweep, registered->T_grid_robot);
+    measured.push_back({*registered, evidence, Utility(weights, evidence)});
   }
-  std::stable_sort(
-      registered.begin(), registered.end(),
-      [](const auto& a, const auto& b) { return a.first > b.first; });
-  std::vector<ScanCandidate> candidates;
-  for (const auto& entry : KeepDistinct(
-           registered,
-           [](const auto& candidate) { return candidate.second.T_map_robot; },
-           sweep.centre, kSamePose, kMaxNumCandidates)) {
-    candidates.push_back(entry.second);
-  }
-  return candidates;
+  std::stable_sort(measured.begin(), measured.end(),
+                   [](const MeasuredSweep& a, const MeasuredSweep& b) {
+                     return a.utility > b.utility;
+                   });
+  return KeepDistinct(
+      measured,
+      [](const MeasuredSweep& one) { return one.registered.T_grid_robot; },
+      sweep.centre, kSamePose, kMaxNumCandidates);
 }
 
 int NumEchoes(const Sweep& sweep) {
@@ -103,12 +104,12 @@ int NumEchoes(const Sweep& sweep) {
                     [](const RobotBeam& beam) { return beam.has_echo; }));
 }
 
-std::vector<Rigid2> PosesOf(const std::vector<ScanCandidate>& candidates) {
-  std::vector<Rigid2> poses;
-  for (const ScanCandidate& candidate : candidates) {
-    poses.push_back(candidate.T_map_robot);
+std::vector<Rigid2> PosesOf(const std::vector<MeasuredSweep>& sweeps) {
+  std::vector<Rigid2> T_grid_robot;
+  for (const MeasuredSweep& sweep : sweeps) {
+    T_grid_robot.push_back(sweep.registered.T_grid_robot);
   }
-  return poses;
+  return T_grid_robot;
 }
 
 void AssignProbabilities(const ScanLocalizationOptions& options,
@@ -153,7 +154,7 @@ std::string DescribeFit(const BeamEvidence& evidence) {
 
 // Of the candidates, how many it takes to hold nine tenths of what they hold.
 size_t NumLikely(const ScanLocalization& result) {
-  double left = 0.9 * (1. - result.elsewhere_probability);
+  double left = 0.9 * (1. - *result.elsewhere_probability);
   size_t count = 0;
   while (count < result.candidates.size() && left > 0.) {
     left -= result.candidates[count++].probability;
@@ -171,14 +172,14 @@ void JudgeCandidates(const ScanLocalizationOptions& options, const Sweep& sweep,
     result->reason =
         absl::StrCat("one pose has the probability ", compared.number, ": ",
                      DescribeFit(best.evidence));
-  } else if (result->elsewhere_probability > 0.5) {
+  } else if (*result->elsewhere_probability > 0.5) {
     result->verdict = LocalizationVerdict::kNothingAlike;
     result->reason = absl::StrFormat(
         "it fits nowhere well: at the best pose %s; with the probability %.2f "
         "the robot is where the map never was, or too much has changed; %s",
-        DescribeFit(best.evidence), result->elsewhere_probability,
+        DescribeFit(best.evidence), *result->elsewhere_probability,
         Advice(sweep));
-  } else if (result->elsewhere_probability <= kMaxElsewhereIfAmbiguous &&
+  } else if (*result->elsewhere_probability <= kMaxElsewhereIfAmbiguous &&
              NumLikely(*result) > 1) {
     result->verdict = LocalizationVerdict::kAmbiguous;
     result->reason = absl::StrFormat(
@@ -193,16 +194,20 @@ void JudgeCandidates(const ScanLocalizationOptions& options, const Sweep& sweep,
         "the best pose, %s, has the probability %s, and certain is %s; being "
         "elsewhere has %.2f; %s",
         FormatScanPose(best.T_map_robot), compared.number, compared.threshold,
-        result->elsewhere_probability, Advice(sweep));
+        *result->elsewhere_probability, Advice(sweep));
   }
 }
 
-// Into the map frame.
-ScanCandidate MovedToMap(const Rigid2& T_map_grid, ScanCandidate candidate) {
-  candidate.T_map_robot = T_map_grid * candidate.T_map_robot;
+// Without a probability yet.
+ScanCandidate CandidateOf(const Rigid2& T_map_grid,
+                          const MeasuredSweep& measured) {
+  ScanCandidate candidate;
+  candidate.T_map_robot = T_map_grid * measured.registered.T_grid_robot;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   rotation.topLeftCorner<2, 2>() = T_map_grid.RotationMatrix();
-  candidate.covariance = rotation * candidate.covariance * rotation.transpose();
+  candidate.covariance =
+      rotation * measured.registered.covariance * rotation.transpose();
+  candidate.evidence = measured.evidence;
   return candidate;
 }
 
@@ -220,15 +225,16 @@ std::vector<ScanCandidate> FindCandidates(
       SearchPanoramas(map.viewpoints, map.rays.geometry().resolution, coarse,
                       static_cast<size_t>(options.num_registered_poses));
   clock.Begin("register coarsely");
-  const std::vector<ScanCandidate> likely =
+  const std::vector<MeasuredSweep> likely =
       RegisterAll(options.candidate_weights, map.rays, coarse, kNumCoarseBeams,
                   kCoarseKernelScale, poses);
   clock.Begin("register finely");
-  std::vector<ScanCandidate> candidates =
-      RegisterAll(options.candidate_weights, map.rays, sweep, kNoLimit,
-                  kFineKernelScale, PosesOf(likely));
-  for (ScanCandidate& candidate : candidates) {
-    candidate = MovedToMap(map.rays.geometry().T_submap_grid, candidate);
+  std::vector<ScanCandidate> candidates;
+  for (const MeasuredSweep& measured :
+       RegisterAll(options.candidate_weights, map.rays, sweep, kNoLimit,
+                   kFineKernelScale, PosesOf(likely))) {
+    candidates.push_back(
+        CandidateOf(map.rays.geometry().T_submap_grid, measured));
   }
   clock.End();
   return candidates;
@@ -302,6 +308,7 @@ ScanLocalization LocalizeScans(const ScanLocalizationOptions& options,
   result.candidates =
       FindCandidates(options, map, scans, sweep, &result.stage_seconds);
   if (result.candidates.empty()) {
+    result.elsewhere_probability = 1.;
     result.reason = "no pose of the map has its echoes near walls";
     return result;
   }

@@ -98,7 +98,8 @@ struct ScanLocalization {
   // whatever the verdict. Their probabilities and that of being elsewhere sum
   // to one.
   std::vector<ScanCandidate> candidates;
-  double elsewhere_probability = 1.;
+  // None where too little was seen to search.
+  std::optional<double> elsewhere_probability;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 

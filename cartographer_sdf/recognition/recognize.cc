@@ -155,6 +155,13 @@ bool VerifiesNeighbourhoods(const RecognitionOptions& options) {
   return options.verify_neighbourhoods && options.match.method == Method::kSdf;
 }
 
+TrajectoryLinks FindLinks(const RecognitionOptions& options,
+                          const TrajectoryPlaces& map,
+                          const Executor& executor) {
+  return TrajectoryLinks(options.links, options.match.verification, map,
+                         executor);
+}
+
 // `maps` has links.
 std::vector<Match> VerifyTogether(const RecognitionOptions& options,
                                   const NeighbourhoodMaps& maps,
@@ -175,14 +182,13 @@ std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
                                  StageClock* const clock) {
   if (!VerifiesNeighbourhoods(options)) return matches;
   const ProgressCallback on_progress = clock->Begin("verify neighbourhoods");
-  const auto find_links = [&](const TrajectoryPlaces& map) {
-    return TrajectoryLinks(options.links, options.match.verification, map,
-                           executor);
-  };
-  const TrajectoryLinks reference_links = find_links(maps.references);
+  const TrajectoryLinks reference_links =
+      FindLinks(options, maps.references, executor);
   std::optional<TrajectoryLinks> query_links;
   // Within one map both are the same.
-  if (!maps.min_index_gap) query_links.emplace(find_links(maps.queries));
+  if (!maps.min_index_gap) {
+    query_links.emplace(FindLinks(options, maps.queries, executor));
+  }
   maps.reference_links = &reference_links;
   maps.query_links = query_links ? &*query_links : &reference_links;
   return VerifyTogether(options, maps, std::move(matches), executor,
@@ -246,11 +252,8 @@ std::vector<Match> IncrementalRecognition::Add(
                    });
   if (!VerifiesNeighbourhoods(options_) || matches_.empty()) return matches_;
   if (!reference_links_) {
-    const VerificationOptions& verification = options_.match.verification;
-    reference_links_.emplace(options_.links, verification, maps_.references,
-                             executor_);
-    query_links_.emplace(options_.links, verification, maps_.queries,
-                         executor_);
+    reference_links_.emplace(FindLinks(options_, maps_.references, executor_));
+    query_links_.emplace(FindLinks(options_, maps_.queries, executor_));
     maps_.reference_links = &*reference_links_;
     maps_.query_links = &*query_links_;
   }

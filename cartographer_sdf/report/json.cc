@@ -166,7 +166,7 @@ Json ToJson(const ScanLocalization& result) {
       {"T_map_robot",
        is_localized ? ToJson(result.candidates.front().T_map_robot) : Json()},
       {"candidates", candidates},
-      {"elsewhere_probability", result.elsewhere_probability},
+      {"elsewhere_probability", ToJson(result.elsewhere_probability)},
       {"milliseconds", MillisecondsJson(result.stage_seconds)}};
 }
 

@@ -134,9 +134,12 @@ std::vector<std::pair<std::string, std::string>> ScanSummary(
     const ScanLocalization& result) {
   std::vector<std::pair<std::string, std::string>> summary = {
       {"Answer", LocalizationVerdictName(result.verdict)},
-      {"Reason", result.reason},
-      {"Probability of being elsewhere",
-       absl::StrFormat("%.4f", result.elsewhere_probability)}};
+      {"Reason", result.reason}};
+  if (result.elsewhere_probability) {
+    summary.emplace_back(
+        "Probability of being elsewhere",
+        absl::StrFormat("%.4f", *result.elsewhere_probability));
+  }
   for (size_t k = 0; k < result.candidates.size(); ++k) {
     const ScanCandidate& candidate = result.candidates[k];
     if (k > 0 && candidate.probability < kMinDrawnProbability) break;

@@ -74,8 +74,9 @@ void PrintScanResult(const ScanFile& file, const ScanLocalization& result) {
     std::cout << absl::StrFormat("  %6.4f  %s\n", candidate.probability,
                                  FormatPose(candidate.T_map_robot));
   }
+  if (!result.elsewhere_probability) return;
   std::cout << absl::StrFormat("  %6.4f  elsewhere\n",
-                               result.elsewhere_probability);
+                               *result.elsewhere_probability);
 }
 
 // Refused if any robot was not localised, with the reason of the first.

@@ -160,8 +160,8 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfScanPlacesIsWithout) {
 std::string Text(const ScanLocalization& localization) {
   std::ostringstream text;
   text.precision(17);
-  text << localization.reason << " " << localization.elsewhere_probability
-       << "\n";
+  text << localization.reason << " "
+       << localization.elsewhere_probability.value_or(-1.) << "\n";
   for (const ScanCandidate& candidate : localization.candidates) {
     text << candidate.T_map_robot.translation().transpose() << " "
          << candidate.probability << "\n";

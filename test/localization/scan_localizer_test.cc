@@ -29,7 +29,7 @@ PanoramaMap MapOf(const OccupancyGrid& grid) {
 }
 
 double SumOfProbabilities(const ScanLocalization& result) {
-  double sum = result.elsewhere_probability;
+  double sum = result.elsewhere_probability.value();
   for (const ScanCandidate& candidate : result.candidates) {
     sum += candidate.probability;
   }
@@ -140,7 +140,7 @@ TEST_F(ScanLocalizerTest, FewEchoesAreTooLittle) {
   const ScanLocalization result = Locate({scan});
   EXPECT_EQ(result.verdict, LocalizationVerdict::kTooLittleSeen);
   EXPECT_THAT(result.reason, HasSubstr("turn around"));
-  EXPECT_EQ(result.elsewhere_probability, 1.);
+  EXPECT_FALSE(result.elsewhere_probability.has_value());
   EXPECT_EQ(Locate({}).verdict, LocalizationVerdict::kTooLittleSeen);
 }
 

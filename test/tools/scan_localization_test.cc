@@ -119,6 +119,19 @@ TEST_F(ScanLocalizationTest, SeveralFilesAreSeveralRobots) {
   EXPECT_THAT(result.output, HasSubstr("not localized: "));
 }
 
+TEST_F(ScanLocalizationTest, WhereTooLittleIsSeenNothingIsSaidOfElsewhere) {
+  const std::string few =
+      directory_.Write("few.json", R"({"points": [[1, 0], [0, 1]]})");
+  const ProgramResult result = RunTestProgram(
+      {"relocalize", map_, "--scan", few, "--result", File("few_found.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.output, HasSubstr("too_little_seen"));
+  EXPECT_THAT(result.output, ::testing::Not(HasSubstr("elsewhere")));
+  const Json json = ParseFile("few_found.json")["scans"].at(0);
+  EXPECT_TRUE(json["elsewhere_probability"].is_null());
+  EXPECT_TRUE(json["candidates"].empty());
+}
+
 TEST_F(ScanLocalizationTest, FindsTheRobotInAMapOfCartographer) {
   const std::string map = File("office.pbstream");
   const std::string drive = File("drive.pbstream");
