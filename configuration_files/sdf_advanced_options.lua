@@ -411,6 +411,13 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- Largest fraction of the submaps that may contradict the answer. Larger:
       -- tolerates more change since the map was made.
       max_contradicting_fraction = 0.3,
+      -- [m] Two submaps cannot show the same place if a longer straight wall of
+      -- one stands across the free space of the other. Larger: tolerates
+      -- partitions that were moved.
+      max_crossing_wall_meters = 3.,
+      -- Largest fraction of the pairs of submaps that the answer makes overlap
+      -- that such a wall may cross. Larger: tolerates torn submaps.
+      max_crossed_fraction = 0.05,
       -- [m], [rad] Answers that differ by less count as the same. Larger:
       -- tolerates more drift within the map, but overlooks look-alikes close
       -- by.

@@ -320,6 +320,8 @@ inline void VisitOptions(OptionVisitor& visit, PlacementOptions& options) {
   visit("min_lead", options.min_lead);
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_contradicting_fraction", options.max_contradicting_fraction);
+  visit("max_crossing_wall_meters", options.max_crossing_wall_meters);
+  visit("max_crossed_fraction", options.max_crossed_fraction);
   visit("same_distance_meters", options.same_distance_meters);
   visit("same_rotation", options.same_rotation);
   visit("min_observed_area", options.min_observed_area);

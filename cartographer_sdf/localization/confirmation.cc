@@ -8,6 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "cartographer_sdf/geometry/evenly_spaced.h"
+#include "cartographer_sdf/verification/crossing_wall.h"
+
 namespace cartographer_sdf {
 namespace {
 
@@ -19,6 +22,9 @@ constexpr double kMinOverlap = 0.4;
 // that count against the placement.
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
+
+// Pairs that are searched for crossing walls, evenly spaced among all.
+constexpr size_t kMaxNumComparedPairs = 200;
 
 // A pair of places that the placement makes overlap.
 struct PairToCheck {
@@ -34,16 +40,14 @@ class Confirmer {
  public:
   Confirmer(const LocalizationTask& task, std::vector<PairPose> votes)
       : task_(task), votes_(std::move(votes)) {
-    for (const PairPose& vote : votes_) {
-      done_.insert({vote.reference, vote.query});
-    }
+    for (const PairPose& vote : votes_) done_.insert(IdsOf(vote));
   }
 
   // Verifies the pairs that the votes so far predict, nearest first; returns
   // false if none is left.
   bool Spread(const size_t max_num_pairs, const Executor& executor,
               Confirmation* const confirmation) {
-    std::vector<PairToCheck> pairs = PairsToCheck();
+    std::vector<PairToCheck> pairs = PredictPairs(kMaxSigma, done_);
     if (pairs.empty()) return false;
     pairs.erase(pairs.begin() + static_cast<std::ptrdiff_t>(
                                     std::min(pairs.size(), max_num_pairs)),
@@ -63,17 +67,82 @@ class Confirmer {
     return true;
   }
 
+  // Searches the votes and what they predict for crossing walls.
+  void FindCrossingWalls(const Executor& executor,
+                         Confirmation* const confirmation) const {
+    std::vector<PairPose> pairs = votes_;
+    std::set<Ids> voted;
+    for (const PairPose& vote : votes_) voted.insert(IdsOf(vote));
+    for (const PairToCheck& pair :
+         PredictPairs(kMaxContradictionSigma, voted)) {
+      pairs.push_back(
+          {pair.reference->id, pair.query->id, pair.T_reference_query, 0.});
+    }
+    const std::vector<size_t> indices = EvenlySpacedIndices(
+        pairs.size(), std::min(pairs.size(), kMaxNumComparedPairs));
+    std::vector<std::optional<double>> lengths(indices.size());
+    executor(indices.size(), [&](const size_t k) {
+      const PairPose& pair = pairs[indices[k]];
+      lengths[k] = CrossingLength(pair, voted.count(IdsOf(pair)) > 0);
+    });
+    for (size_t k = 0; k < indices.size(); ++k) {
+      if (!lengths[k]) continue;
+      ++confirmation->num_compared;
+      if (*lengths[k] <= task_.placement.max_crossing_wall_meters) continue;
+      const PairPose& pair = pairs[indices[k]];
+      confirmation->crossing_walls.push_back(
+          {pair.reference, pair.query, *lengths[k]});
+    }
+  }
+
   [[nodiscard]] size_t num_checked() const { return num_checked_; }
 
  private:
-  [[nodiscard]] std::vector<PairToCheck> PairsToCheck() const {
+  using Ids = std::pair<SubmapId, SubmapId>;
+
+  [[nodiscard]] static Ids IdsOf(const PairPose& pair) {
+    return {pair.reference, pair.query};
+  }
+
+  [[nodiscard]] bool IsNearPrediction(const Rigid2& T_reference_query,
+                                      const PairPose& predicted) const {
+    return AreNear(
+        T_reference_query, predicted.T_reference_query,
+        task_.query.layout->centroids.at(predicted.query),
+        {task_.placement.same_distance_meters, task_.placement.same_rotation});
+  }
+
+  // Returns the length of the longest crossing wall at the pose of the vote, or
+  // where a predicted pair registers; nullopt if that is not near.
+  [[nodiscard]] std::optional<double> CrossingLength(const PairPose& pair,
+                                                     const bool is_vote) const {
+    const SurfaceModel& reference =
+        task_.map.places->at(pair.reference).surface;
+    const SurfaceModel& query = task_.query.places->at(pair.query).surface;
+    Rigid2 T_reference_query = pair.T_reference_query;
+    if (!is_vote) {
+      const std::optional<Rigid2> registered =
+          RegisterSubmaps(task_.match.verification.registration, reference,
+                          query, T_reference_query);
+      if (!registered || !IsNearPrediction(*registered, pair)) {
+        return std::nullopt;
+      }
+      T_reference_query = *registered;
+    }
+    return LongestCrossingWall(reference, query, T_reference_query);
+  }
+
+  // Returns the pairs that the votes make overlap, without those in `done`,
+  // nearest first.
+  [[nodiscard]] std::vector<PairToCheck> PredictPairs(
+      const double max_sigma, const std::set<Ids>& done) const {
     std::vector<PairToCheck> pairs;
     for (const auto& [reference_id, reference] : *task_.map.places) {
       if (task_.map.layout->T_map_submap.count(reference_id) == 0) continue;
       for (const auto& [query_id, query] : *task_.query.places) {
-        if (done_.count({reference_id, query_id}) > 0) continue;
+        if (done.count({reference_id, query_id}) > 0) continue;
         std::optional<PairToCheck> pair = Predict(reference, query);
-        if (pair && DriftSigma(task_.consistency, pair->way) <= kMaxSigma &&
+        if (pair && DriftSigma(task_.consistency, pair->way) <= max_sigma &&
             OverlapsEnough(reference.surface, query.surface,
                            pair->T_reference_query)) {
           pairs.push_back(*std::move(pair));
@@ -130,10 +199,9 @@ class Confirmer {
         VerifyHypotheses(task_.match.verification, pair.reference->surface,
                          pair.query->surface, {pair.T_reference_query});
     if (!verified || verified->verdict != Verdict::kAccepted ||
-        !AreNear(verified->T_reference_query, pair.T_reference_query,
-                 task_.query.layout->centroids.at(pair.query->id),
-                 {task_.placement.same_distance_meters,
-                  task_.placement.same_rotation})) {
+        !IsNearPrediction(
+            verified->T_reference_query,
+            {pair.reference->id, pair.query->id, pair.T_reference_query, 0.})) {
       return std::nullopt;
     }
     return MakeMatch(task_.match, *pair.reference, *pair.query,
@@ -142,7 +210,7 @@ class Confirmer {
 
   const LocalizationTask& task_;
   std::vector<PairPose> votes_;
-  std::set<std::pair<SubmapId, SubmapId>> done_;
+  std::set<Ids> done_;
   size_t num_checked_ = 0;
 };
 
@@ -189,6 +257,7 @@ Confirmation ConfirmPlacement(const LocalizationTask& task,
          confirmer.Spread(max_num_pairs - confirmer.num_checked(), executor,
                           &confirmation)) {
   }
+  confirmer.FindCrossingWalls(executor, &confirmation);
   return confirmation;
 }
 

@@ -43,11 +43,23 @@ struct PlacedMap {
     const Place& reference, const Place& query,
     const Rigid2& T_reference_query);
 
+// A pair of submaps that the placement makes overlap, a wall of one of which
+// stands across the free space of the other.
+struct CrossingWall {
+  SubmapId reference;
+  SubmapId query;
+  double length = 0.;  // [m]
+};
+
 struct Confirmation {
   // Accepted at the predicted pose; without pairs that have voted already.
   std::vector<Match> agreeing;
   // Walls of one lie in the free space of the other.
   std::vector<Match> contradicting;
+  // Of so many pairs, votes or not, those that are crossed by a wall longer
+  // than PlacementOptions::max_crossing_wall_meters.
+  int num_compared = 0;
+  std::vector<CrossingWall> crossing_walls;
 };
 
 // The query to localise, the map, and the options. Nothing is owned.

@@ -119,6 +119,8 @@ class Localizer {
       std::stable_sort(voting.begin(), voting.end(), &ByIds);
       result_.matches = std::move(voting);
       result_.contradictions.clear();
+      result_.crossing_walls.clear();
+      result_.num_compared = 0;
       clock_.Begin("vote");
       Vote();
       Decide();
@@ -160,6 +162,8 @@ class Localizer {
         task_, std::move(votes),
         static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
     result_.contradictions = std::move(confirmation.contradicting);
+    result_.crossing_walls = std::move(confirmation.crossing_walls);
+    result_.num_compared = confirmation.num_compared;
     if (confirmation.agreeing.empty()) return;
     // A pair matched elsewhere and confirmed here has two matches.
     for (Match& match : confirmation.agreeing) {
@@ -226,6 +230,26 @@ class Localizer {
     return rival;
   }
 
+  [[nodiscard]] bool IsCrossed() const {
+    return static_cast<double>(result_.crossing_walls.size()) >
+           task_.placement.max_crossed_fraction * result_.num_compared;
+  }
+
+  [[nodiscard]] std::string DescribeCrossing(const std::string& where) const {
+    const CrossingWall& longest = *std::max_element(
+        result_.crossing_walls.begin(), result_.crossing_walls.end(),
+        [](const CrossingWall& a, const CrossingWall& b) {
+          return a.length < b.length;
+        });
+    return absl::StrFormat(
+        "contradicted: alike at %s, but walls of one map stand across the free "
+        "space of the other in %d of %d pairs of submaps, up to %.1f m long in "
+        "submap %d,%d and submap %d,%d of the query",
+        where, result_.crossing_walls.size(), result_.num_compared,
+        longest.length, longest.reference.trajectory, longest.reference.index,
+        longest.query.trajectory, longest.query.index);
+  }
+
   // Scores are sums that grow with what was seen of one place, right or wrong:
   // a rival that would be certain by itself, with half the evidence of the
   // best, is as good a reason to doubt as one just behind it.
@@ -259,6 +283,8 @@ class Localizer {
              absl::StrFormat("contradicted: alike at %s, but the surroundings "
                              "of %.0f %% of the places do not match",
                              where, 100. * fraction));
+    } else if (IsCrossed()) {
+      Refuse(LocalizationVerdict::kContradicted, DescribeCrossing(where));
     } else if (rival != nullptr &&
                (best.score - rival->score < options.min_lead ||
                 IsCertainRival(best, *rival))) {

@@ -77,6 +77,9 @@ struct Localization {
   int num_agreeing = 0;
   int num_contradicting = 0;
   std::vector<Match> contradictions;
+  // Among so many pairs that it makes overlap; 0 if it was not confirmed.
+  int num_compared = 0;
+  std::vector<CrossingWall> crossing_walls;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 

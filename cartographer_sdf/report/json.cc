@@ -85,7 +85,9 @@ Json AnswerJson(const Localization& result, const char* const certain,
           {"score", ToJson(result.score)},
           {"runner_up_score", ToJson(result.runner_up_score)},
           {"agreeing", result.num_agreeing},
-          {"contradicting", result.num_contradicting}};
+          {"contradicting", result.num_contradicting},
+          {"compared", result.num_compared},
+          {"crossed", result.crossing_walls.size()}};
 }
 
 Json LinksJson(const std::vector<SessionLink>& links) {

@@ -13,6 +13,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
+#include "test/testing/divided_hall.h"
 #include "test/testing/visited_rooms.h"
 
 namespace cartographer_sdf::localizer_test {
@@ -159,6 +160,28 @@ TEST_F(LocalizeTest, SaysWhenTooLittleWasSeen) {
   const Localization found = Find({InWestRoom(9., Verdict::kAccepted)});
   EXPECT_EQ(found.verdict, LocalizationVerdict::kTooLittleSeen);
   EXPECT_THAT(found.reason, HasSubstr("10000 are needed"));
+}
+
+TEST(CrossingWallsTest, ALongOneRefutesWhatIsAlike) {
+  const Localization found = testing::DividedHall::Locate(
+      LocalizationOptions(), testing::DividedHall(6.), MakeExecutor(1));
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kContradicted);
+  EXPECT_THAT(found.reason,
+              HasSubstr("stand across the free space of the other in 1 of 2 "
+                        "pairs of submaps, up to 6"));
+  EXPECT_EQ(found.num_compared, 2);
+  ASSERT_THAT(found.crossing_walls, SizeIs(1));
+  EXPECT_EQ(found.crossing_walls[0].reference, testing::DividedHall::kHall);
+  EXPECT_EQ(found.crossing_walls[0].query, testing::DividedHall::kDivided);
+  EXPECT_NEAR(found.crossing_walls[0].length, 6., 0.2);
+}
+
+TEST(CrossingWallsTest, AShortOneMayBeFurniture) {
+  const Localization found = testing::DividedHall::Locate(
+      LocalizationOptions(), testing::DividedHall(2.), MakeExecutor(1));
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kLocalized) << found.reason;
+  EXPECT_EQ(found.num_compared, 2);
+  EXPECT_THAT(found.crossing_walls, SizeIs(0));
 }
 
 }  // namespace

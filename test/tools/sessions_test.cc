@@ -66,8 +66,8 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
   EXPECT_THAT(
       NamesOfAnswer(json),
       ElementsAre("localized", "verdict", "reason", "T_map_query", "score",
-                  "runner_up_score", "agreeing", "contradicting", "closures",
-                  "placements", "milliseconds"));
+                  "runner_up_score", "agreeing", "contradicting", "compared",
+                  "crossed", "closures", "placements", "milliseconds"));
   EXPECT_EQ(json["status"], "done");
   EXPECT_EQ(json["localized"], true);
   EXPECT_EQ(json["verdict"], "localized");
