@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "absl/strings/str_format.h"
 #include "cartographer_sdf/place_store/described_map.h"
 #include "glog/logging.h"
 
@@ -181,19 +182,16 @@ bool DoubtOutliers(const OutlierRejectionOptions& options,
 }
 
 // Keeps doubtful constraints that agree with the map made without them.
-bool Rehabilitate(const AuditOptions& options,
+void Rehabilitate(const AuditOptions& options,
                   std::vector<AuditedConstraint>* const constraints) {
-  bool any = false;
   for (AuditedConstraint& audited : *constraints) {
     if (IsDoubtful(audited.verdict) &&
         audited.error_after.translation <=
             options.max_agreeing_translation_meters &&
         audited.error_after.rotation <= options.max_agreeing_rotation) {
       audited.verdict = AuditVerdict::kAgreesWithMap;
-      any = true;
     }
   }
-  return any;
 }
 
 size_t CountDoubtful(const std::vector<AuditedConstraint>& constraints) {
@@ -223,36 +221,118 @@ std::vector<AuditedConstraint> ListConstraints(
   return constraints;
 }
 
-// Tests the constraints against the map made without the doubtful ones.
-void JudgeByMap(const AuditOptions& options,
-                const std::set<int>& frozen_trajectories,
-                const ProgressCallback& on_progress, Audit* const audit) {
-  const PoseGraph& before = audit->state.pose_graph;
-  std::vector<AuditedConstraint>* const constraints = &audit->constraints;
-  audit->pose_graph = before;
-  const int num_rounds = options.outlier_rejection.max_num_rounds + 2;
-  int round = 0;
-  const auto optimize = [&] {
-    // Starts from the given poses each time, so that dropped constraints have
-    // no effect.
-    audit->pose_graph = WithoutDoubtful(before, *constraints);
-    audit->optimizations.push_back(
-        Optimize(audit->optimization, frozen_trajectories, &audit->pose_graph));
-    MeasureErrors(before, audit->pose_graph, constraints);
-    if (on_progress) on_progress(static_cast<double>(++round) / num_rounds);
-  };
-  if (CountDoubtful(*constraints) > 0) optimize();
-  for (int k = 0; k < options.outlier_rejection.max_num_rounds; ++k) {
-    if (!DoubtOutliers(options.outlier_rejection, constraints)) break;
-    optimize();
+std::map<SubmapId, Eigen::Vector2d> CentroidsOf(
+    const std::map<SubmapId, Place>& places) {
+  std::map<SubmapId, Eigen::Vector2d> centroids;
+  for (const auto& [id, place] : places) {
+    centroids.emplace(id, ObservedCentroid(place.surface));
   }
-  const bool rehabilitated = Rehabilitate(options, constraints);
-  audit->num_doubtful = CountDoubtful(*constraints);
+  return centroids;
+}
+
+OptimizationOptions WithoutOdometry(OptimizationOptions options) {
+  options.odometry_translation_weight = 0.;
+  options.odometry_rotation_weight = 0.;
+  return options;
+}
+
+bool ContradictsKept(const OutlierRejectionOptions& options,
+                     std::vector<AuditedConstraint> constraints) {
+  return DoubtOutliers(options, &constraints);
+}
+
+// Tests the constraints against the map made without the doubtful ones.
+class MapJudge {
+ public:
+  // Nothing is owned.
+  MapJudge(const AuditOptions& options, const std::set<int>& frozen,
+           const ProgressCallback& on_progress, Audit* const audit)
+      : options_(options),
+        frozen_(frozen),
+        on_progress_(on_progress),
+        audit_(audit) {}
+
+  // Odometry takes no part in judging: where wheels slip, it pulls the map away
+  // from constraints that are right, and each that goes for it lets it pull
+  // farther.
+  void Judge() {
+    const OptimizationOptions judging = WithoutOdometry(audit_->optimization);
+    std::vector<AuditedConstraint>* const constraints = &audit_->constraints;
+    audit_->pose_graph = audit_->state.pose_graph;
+    if (CountDoubtful(*constraints) > 0) OptimizeWith(judging);
+    for (int k = 0; k < options_.outlier_rejection.max_num_rounds; ++k) {
+      if (!DoubtOutliers(options_.outlier_rejection, constraints)) break;
+      OptimizeWith(judging);
+    }
+    Rehabilitate(options_, constraints);
+    audit_->num_doubtful = CountDoubtful(*constraints);
+    if (audit_->num_doubtful > 0) {
+      Mend(judging);
+    } else {
+      audit_->pose_graph = audit_->state.pose_graph;
+      MeasureErrors(audit_->pose_graph, audit_->pose_graph, constraints);
+    }
+  }
+
+ private:
+  // Makes the map without doubtful constraints, with odometry unless it
+  // contradicts what is kept.
+  void Mend(const OptimizationOptions& without_odometry) {
+    OptimizeWith(audit_->optimization);
+    audit_->leaves_out_odometry =
+        ContradictsKept(options_.outlier_rejection, audit_->constraints);
+    if (!audit_->leaves_out_odometry) return;
+    audit_->optimization = without_odometry;
+    OptimizeWith(without_odometry);
+  }
+
+  // Starts from the given poses each time, so that dropped constraints have no
+  // effect.
+  void OptimizeWith(const OptimizationOptions& optimization) {
+    const PoseGraph& before = audit_->state.pose_graph;
+    audit_->pose_graph = WithoutDoubtful(before, audit_->constraints);
+    audit_->optimizations.push_back(
+        Optimize(optimization, frozen_, &audit_->pose_graph));
+    MeasureErrors(before, audit_->pose_graph, &audit_->constraints);
+    if (on_progress_) {
+      on_progress_(
+          std::min(1., static_cast<double>(++num_rounds_) /
+                           (options_.outlier_rejection.max_num_rounds + 3)));
+    }
+  }
+
+  const AuditOptions& options_;
+  const std::set<int>& frozen_;
+  const ProgressCallback& on_progress_;
+  Audit* const audit_;
+  int num_rounds_ = 0;
+};
+
+// Compares the walls of the map with those of the map as read.
+void CompareQuality(const RecognitionOptions& recognition,
+                    const std::map<SubmapId, Place>& places,
+                    const Executor& executor, Audit* const audit) {
+  // Of all wall, beyond what the choice of pairs makes, and relative to the map
+  // as read.
+  constexpr double kMaxIncrease = 0.002, kMaxRelativeIncrease = 0.1;
+  const auto measure = [&](const PoseGraph& pose_graph) {
+    return MeasureMapQuality(recognition.match.verification.agreement,
+                             recognition.min_index_gap, places, pose_graph,
+                             executor);
+  };
+  audit->quality_before = measure(audit->state.pose_graph);
   if (audit->num_doubtful == 0) {
-    audit->pose_graph = before;
-    MeasureErrors(before, before, constraints);
-  } else if (rehabilitated) {
-    optimize();
+    audit->quality_after = audit->quality_before;
+    return;
+  }
+  audit->quality_after = measure(audit->pose_graph);
+  const double before = audit->quality_before.contradiction_ratio;
+  const double after = audit->quality_after.contradiction_ratio;
+  if (after > before + std::max(kMaxIncrease, kMaxRelativeIncrease * before)) {
+    audit->refusal = absl::StrFormat(
+        "without the doubtful constraints more of the walls would stand in "
+        "free space: %.1f %%, now %.1f %%",
+        100. * after, 100. * before);
   }
 }
 
@@ -311,12 +391,8 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
                   clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   const PoseGraph& pose_graph = map->state.pose_graph;
-  std::map<SubmapId, Eigen::Vector2d> centroids;
-  for (const auto& [id, place] : map->places) {
-    centroids.emplace(id, ObservedCentroid(place.surface));
-  }
-  const GroupedConstraints grouped =
-      GroupConstraints(options.grouping, pose_graph, centroids);
+  const GroupedConstraints grouped = GroupConstraints(
+      options.grouping, pose_graph, CentroidsOf(map->places));
   audit.groups = ExamineGroups(match, options, map->places, grouped.groups,
                                executor, clock.Begin("compare submaps"));
   for (AuditedGroup& group : audit.groups) {
@@ -327,7 +403,10 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
   audit.constraints = ListConstraints(pose_graph, grouped, audit.groups);
   audit.optimization = OptimizationInForce(loop_closing.closing, pose_graph);
   audit.state = std::move(map->state);
-  JudgeByMap(options, frozen_trajectories, clock.Begin("optimise"), &audit);
+  MapJudge(options, frozen_trajectories, clock.Begin("optimise"), &audit)
+      .Judge();
+  clock.Begin("compare walls");
+  CompareQuality(loop_closing.recognition, map->places, executor, &audit);
   clock.End();
   return audit;
 }

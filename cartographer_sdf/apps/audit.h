@@ -9,7 +9,7 @@
 //
 //   audit = AuditMap(options, audit_options, path, {}, executor);
 //   for (const AuditedGroup& group : audit->groups) ...
-//   if (audit->num_doubtful > 0) WriteMap(path, output, audit->pose_graph);
+//   if (audit->refusal.empty()) WriteMap(path, output, audit->pose_graph);
 
 #ifndef CARTOGRAPHER_SDF_APPS_AUDIT_H_
 #define CARTOGRAPHER_SDF_APPS_AUDIT_H_
@@ -22,6 +22,7 @@
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/apps/close_loops.h"
+#include "cartographer_sdf/apps/map_quality.h"
 #include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/closing/constraint_groups.h"
 #include "cartographer_sdf/pbstream/map_file.h"
@@ -112,7 +113,16 @@ struct Audit {
   // Optimised without the doubtful constraints; the input graph if there are
   // none.
   PoseGraph pose_graph;
-  OptimizationOptions optimization;  // in force, odometry weights as inferred
+  // In force, odometry weights as inferred; zero if odometry contradicts
+  // constraints that are kept.
+  OptimizationOptions optimization;
+  bool leaves_out_odometry = false;
+  // Of the map as read, and of the one without doubtful constraints.
+  MapQuality quality_before;
+  MapQuality quality_after;
+  // Why the map without doubtful constraints must not replace the one that was
+  // read: its walls agree less. Empty otherwise.
+  std::string refusal;
   std::vector<OptimizationSummary> optimizations;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };

@@ -4,57 +4,35 @@
 #include "cartographer_sdf/apps/fold_check.h"
 
 #include <algorithm>
-#include <iterator>
 #include <optional>
 #include <set>
 
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/apps/map_quality.h"
 #include "cartographer_sdf/localization/confirmation.h"
 
 namespace cartographer_sdf {
 namespace {
 
-// Two submaps that overlap in the graph.
-struct Overlap {
-  std::optional<Match> contradiction;
-};
-
-struct OverlappingPair {
-  const Place* reference;
-  const Place* query;
-  std::optional<Overlap> overlap;
-};
-
-std::vector<OverlappingPair> ListPairs(
-    const int min_index_gap, const std::map<SubmapId, Place>& places) {
-  std::vector<OverlappingPair> pairs;
-  for (auto reference = places.begin(); reference != places.end();
-       ++reference) {
-    for (auto query = std::next(reference); query != places.end(); ++query) {
-      if (ShareScans(reference->first, query->first, min_index_gap)) {
-        continue;
-      }
-      pairs.push_back({&reference->second, &query->second, {}});
-    }
-  }
-  return pairs;
+// Returns the pair at its pose in the graph if it contradicts itself there.
+std::optional<Match> FindContradictionIn(
+    const FoldCheckOptions& options, const VerificationOptions& verification,
+    const PlacePair& pair) {
+  return FindContradiction(verification, options.max_contradiction_ratio,
+                           *pair.reference, *pair.query,
+                           pair.T_reference_query);
 }
 
-// Returns none if the two do not overlap in the graph.
-std::optional<Overlap> FindOverlap(const FoldCheckOptions& options,
-                                   const VerificationOptions& verification,
-                                   const OverlappingPair& pair,
-                                   const PoseGraph& graph) {
-  const Rigid2 T_reference_query =
-      graph.submap_poses.at(pair.reference->id).Inverse() *
-      graph.submap_poses.at(pair.query->id);
-  if (!OverlapsEnough(pair.reference->surface, pair.query->surface,
-                      T_reference_query)) {
-    return std::nullopt;
-  }
-  return Overlap{
-      FindContradiction(verification, options.max_contradiction_ratio,
-                        *pair.reference, *pair.query, T_reference_query)};
+// Whether the two overlapped and contradicted each other in this graph, too.
+bool ContradictedIn(const FoldCheckOptions& options,
+                    const VerificationOptions& verification,
+                    const PoseGraph& graph, const PlacePair& pair) {
+  const PlacePair there = {pair.reference, pair.query,
+                           graph.submap_poses.at(pair.reference->id).Inverse() *
+                               graph.submap_poses.at(pair.query->id)};
+  return OverlapsEnough(there.reference->surface, there.query->surface,
+                        there.T_reference_query) &&
+         FindContradictionIn(options, verification, there).has_value();
 }
 
 using Overlaps = std::map<std::pair<size_t, size_t>, SessionOverlap>;
@@ -97,32 +75,29 @@ std::map<std::pair<size_t, size_t>, SessionOverlap> CheckOverlaps(
     const FoldCheckOptions& options, const RecognitionOptions& recognition,
     const JoinedSessions& joined, const PoseGraph& merged,
     const Executor& executor) {
-  std::vector<OverlappingPair> pairs =
-      ListPairs(recognition.min_index_gap, joined.places);
-  const auto check = [&](const OverlappingPair& pair, const PoseGraph& graph) {
-    return FindOverlap(options, recognition.match.verification, pair, graph);
-  };
+  const VerificationOptions& verification = recognition.match.verification;
+  const std::vector<PlacePair> pairs = FindOverlappingPairs(
+      recognition.min_index_gap, joined.places, merged, executor);
+  std::vector<std::optional<Match>> contradictions(pairs.size());
   executor(pairs.size(), [&](const size_t k) {
-    OverlappingPair& pair = pairs[k];
-    pair.overlap = check(pair, merged);
-    if (!pair.overlap || !pair.overlap->contradiction ||
-        joined.SessionOf(pair.reference->id) !=
-            joined.SessionOf(pair.query->id)) {
-      return;
-    }
+    const PlacePair& pair = pairs[k];
+    contradictions[k] = FindContradictionIn(options, verification, pair);
     // The merge did not cause contradictions that existed before it.
-    const std::optional<Overlap> before = check(pair, joined.state.pose_graph);
-    if (before && before->contradiction) pair.overlap->contradiction.reset();
+    if (contradictions[k] &&
+        joined.SessionOf(pair.reference->id) ==
+            joined.SessionOf(pair.query->id) &&
+        ContradictedIn(options, verification, joined.state.pose_graph, pair)) {
+      contradictions[k].reset();
+    }
   });
   std::map<std::pair<size_t, size_t>, SessionOverlap> overlaps;
-  for (OverlappingPair& pair : pairs) {
-    if (!pair.overlap) continue;
+  for (size_t k = 0; k < pairs.size(); ++k) {
     SessionOverlap& overlap =
-        overlaps[std::minmax({joined.SessionOf(pair.reference->id),
-                              joined.SessionOf(pair.query->id)})];
+        overlaps[std::minmax({joined.SessionOf(pairs[k].reference->id),
+                              joined.SessionOf(pairs[k].query->id)})];
     ++overlap.num_overlapping;
-    if (pair.overlap->contradiction) {
-      overlap.contradictions.push_back(*std::move(pair.overlap->contradiction));
+    if (contradictions[k]) {
+      overlap.contradictions.push_back(*std::move(contradictions[k]));
     }
   }
   return overlaps;

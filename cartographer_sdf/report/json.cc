@@ -147,6 +147,13 @@ Json ToJson(const SubmapId& id) {
   return {{"trajectory", id.trajectory}, {"index", id.index}};
 }
 
+Json ToJson(const MapQuality& quality) {
+  return {{"pairs", quality.num_pairs},
+          {"hit_ratio", quality.hit_ratio},
+          {"contradiction_ratio", quality.contradiction_ratio},
+          {"wall_distance", quality.wall_distance}};
+}
+
 Json ToJson(const Localization& result) {
   Json json = AnswerJson(result, "localized", "T_map_query");
   json.update({{"closures", VotesJson(result)},

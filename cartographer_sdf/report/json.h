@@ -12,6 +12,7 @@
 #include <string>
 #include <type_traits>
 
+#include "cartographer_sdf/apps/map_quality.h"
 #include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
@@ -45,6 +46,8 @@ template <typename T>
 }
 
 // The file R.json of relocalize.
+[[nodiscard]] Json ToJson(const MapQuality& quality);
+
 [[nodiscard]] Json ToJson(const Localization& result);
 
 // The file R.json of relocalize --scan.

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -19,6 +20,24 @@ DEFINE_string(constraints, "",
 
 namespace cartographer_sdf {
 namespace {
+
+std::string DescribeWalls(const MapQuality& quality) {
+  return absl::StrFormat("%.2f %% in free space, %.3f m apart",
+                         100. * quality.contradiction_ratio,
+                         quality.wall_distance);
+}
+
+// How well the walls agree where submaps lie over each other.
+void PrintQuality(const Audit& audit) {
+  if (audit.quality_before.num_pairs == 0) return;
+  std::cout << "walls where submaps overlap: "
+            << DescribeWalls(audit.quality_before);
+  if (audit.num_doubtful > 0) {
+    std::cout << "; without the doubtful constraints: "
+              << DescribeWalls(audit.quality_after);
+  }
+  std::cout << "\n";
+}
 
 void PrintSummary(const Audit& audit) {
   PrintRepair(audit.state);
@@ -34,6 +53,7 @@ void PrintSummary(const Audit& audit) {
                                  IsDoubtful(verdict) ? "doubtful: " : "",
                                  AuditVerdictName(verdict));
   }
+  PrintQuality(audit);
   PrintStages(audit.stage_seconds);
   PrintConvergence(audit.optimizations);
   PrintPaths();
@@ -50,7 +70,14 @@ void RecordAudit(const Audit& audit, RunRecord* const record) {
     verdicts[name] = verdicts.value(name, 0) + 1;
   }
   record->answer["verdicts"] = std::move(verdicts);
+  record->answer["walls_before"] = ToJson(audit.quality_before);
+  record->answer["walls_after"] = ToJson(audit.quality_after);
   RecordConvergence(audit.optimizations, record);
+  if (audit.leaves_out_odometry) {
+    record->Warn(RunWarning::kOdometryLeftOut,
+                 "odometry contradicts constraints that are kept, and is left "
+                 "out of the optimisation");
+  }
   if (audit.num_doubtful > 0) {
     record->Warn(RunWarning::kDoubtful,
                  absl::StrFormat("%d of %d inter-submap constraints are "
@@ -63,6 +90,31 @@ void RecordAudit(const Audit& audit, RunRecord* const record) {
   }
 }
 
+// Writes the files that the flags ask for. If the map without the doubtful
+// constraints is worse than the one that was read, it is not written, which is
+// a refusal; the report is.
+absl::Status WriteFiles(const Options& options, const Audit& audit,
+                        StageProgress* const progress) {
+  absl::Status status;
+  if (!FLAGS_constraints.empty()) {
+    status = WriteAuditTable(FLAGS_constraints, audit);
+  }
+  if (!status.ok()) return status;
+  const std::string output =
+      audit.refusal.empty() ? "" : std::exchange(FLAGS_output, "");
+  status = WriteMapAndReport(
+      audit.state, audit.pose_graph,
+      [&](const SubmapsReader& read_submaps) {
+        return WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input,
+                                audit, read_submaps);
+      },
+      progress);
+  if (!status.ok() || output.empty()) return status;
+  PrintSummary(audit);
+  return RefusalError(
+      absl::StrCat("nothing is written to ", output, ": ", audit.refusal));
+}
+
 absl::Status RunAudit(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("audit");
   if (!task.ok()) return task.status();
@@ -72,19 +124,7 @@ absl::Status RunAudit(RunRecord* const record) {
       AuditMap(options.loop_closing, options.audit, SourceOfFlags(FLAGS_input),
                task->frozen_trajectories, task->executor, progress.Callback());
   if (!audit.ok()) return audit.status();
-  absl::Status status;
-  if (!FLAGS_constraints.empty()) {
-    status = WriteAuditTable(FLAGS_constraints, *audit);
-  }
-  if (status.ok()) {
-    status = WriteMapAndReport(
-        audit->state, audit->pose_graph,
-        [&](const SubmapsReader& read_submaps) {
-          return WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input,
-                                  *audit, read_submaps);
-        },
-        &progress);
-  }
+  const absl::Status status = WriteFiles(options, *audit, &progress);
   RecordAudit(*audit, record);
   if (status.ok()) PrintSummary(*audit);
   return status;
@@ -104,7 +144,9 @@ Subcommand AuditSubcommand() {
       "the others in cycles, and whether the map made without doubtful "
       "constraints contradicts it. With --output, writes the map without the "
       "doubtful constraints, optimised again; every other record of the "
-      "file stays as it is.\n\n"
+      "file stays as it is. Where the walls of that map would agree less than "
+      "those of the map as it is, nothing is written, and the exit code is "
+      "3.\n\n"
       "A map without doubtful constraints is copied, byte for byte.",
       {{"input", FileUse::kRead}},
       {{"output",

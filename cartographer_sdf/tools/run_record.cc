@@ -26,12 +26,17 @@ namespace {
 
 constexpr char kAnyWarning[] = "warning";
 
-constexpr RunWarning kAllWarnings[] = {
-    RunWarning::kRepaired,        RunWarning::kIncomplete,
-    RunWarning::kTornSubmaps,     RunWarning::kNotConverged,
-    RunWarning::kDoubtful,        RunWarning::kContradictions,
-    RunWarning::kSessionsLeftOut, RunWarning::kWindowsNotLocalized,
-    RunWarning::kPlacesNotUsed,   RunWarning::kMapsFailed};
+constexpr RunWarning kAllWarnings[] = {RunWarning::kRepaired,
+                                       RunWarning::kIncomplete,
+                                       RunWarning::kTornSubmaps,
+                                       RunWarning::kNotConverged,
+                                       RunWarning::kDoubtful,
+                                       RunWarning::kOdometryLeftOut,
+                                       RunWarning::kContradictions,
+                                       RunWarning::kSessionsLeftOut,
+                                       RunWarning::kWindowsNotLocalized,
+                                       RunWarning::kPlacesNotUsed,
+                                       RunWarning::kMapsFailed};
 
 std::vector<std::string> AllConditions() {
   std::vector<std::string> names = {OutcomeName(Outcome::kRefused),
@@ -85,6 +90,8 @@ const char* RunWarningCode(const RunWarning warning) {
       return "not_converged";
     case RunWarning::kDoubtful:
       return "doubtful";
+    case RunWarning::kOdometryLeftOut:
+      return "odometry_left_out";
     case RunWarning::kContradictions:
       return "contradictions";
     case RunWarning::kSessionsLeftOut:

@@ -43,6 +43,7 @@ enum class RunWarning {
   kTornSubmaps,          // local SLAM slipped inside of submaps
   kNotConverged,         // the optimisation ran out of iterations
   kDoubtful,             // audit found doubtful constraints
+  kOdometryLeftOut,      // audit: odometry contradicts right constraints
   kContradictions,       // pairs of submaps of the merged map contradict
   kSessionsLeftOut,      // merge left some maps out
   kWindowsNotLocalized,  // of relocalize --num_starts, some of them

@@ -175,6 +175,59 @@ TEST_F(AuditTest, SaysWhatIsWrongWithTheFile) {
               ::testing::HasSubstr("broken.pbstream"));
 }
 
+// The walls of the spoilt map agree nearly as well as those of the good one: a
+// robust loss keeps the wrong constraints from bending it.
+TEST_F(AuditTest, MeasuresWalls) {
+  const MapQuality& spoilt = audit_->quality_before;
+  const MapQuality& mended = audit_->quality_after;
+  EXPECT_GT(spoilt.num_pairs, 10u);
+  EXPECT_GT(mended.num_pairs, 10u);
+  EXPECT_LT(mended.contradiction_ratio, 0.01);
+  EXPECT_NEAR(spoilt.contradiction_ratio, mended.contradiction_ratio, 0.001);
+  EXPECT_LT(mended.wall_distance, 0.05);
+  EXPECT_EQ(audit_->refusal, "");
+}
+
+// All constraints are doubted, and drift returns.
+TEST(DriftingMapAuditTest, RefusesAMapThatIsWorseThanTheOneRead) {
+  const testing::TemporaryDirectory directory;
+  testing::WriteOffice(testing::Slip::kNone, directory.File("open.pbstream"));
+  PoseGraph graph;
+  {
+    const absl::StatusOr<LoopClosingResult> closed = CloseLoops(
+        LoopClosingOptions(), directory.File("open.pbstream"), {}, Threads(2));
+    ASSERT_TRUE(closed.ok()) << closed.status();
+    graph = closed->closed.pose_graph;
+  }
+  ASSERT_TRUE(WriteMap(directory.File("open.pbstream"),
+                       directory.File("good.pbstream"), graph)
+                  .ok());
+  AuditOptions options;
+  options.min_score = 1e3;
+  options.max_agreeing_translation_meters = 0.;
+  const absl::StatusOr<Audit> audit =
+      AuditMap(LoopClosingOptions(), options, directory.File("good.pbstream"),
+               {}, Threads(2));
+  ASSERT_TRUE(audit.ok()) << audit.status();
+  EXPECT_EQ(audit->num_doubtful, audit->constraints.size());
+  EXPECT_GT(audit->quality_after.contradiction_ratio,
+            audit->quality_before.contradiction_ratio + 0.002);
+  EXPECT_THAT(audit->refusal, ::testing::HasSubstr("free space"));
+}
+
+// Poor wheel odometry with a large weight: each constraint that went let it
+// pull farther, until 62 of 150 right ones were gone.
+TEST(RealMapAuditTest, OdometryIsNoWitness) {
+  SKIP_WITHOUT_SHARED_DATA("field/poor_odometry.pbstream");
+  const absl::StatusOr<Audit> audit =
+      AuditMap(LoopClosingOptions(), AuditOptions(),
+               SharedDataPath("field/poor_odometry.pbstream"), {}, Threads(2));
+  ASSERT_TRUE(audit.ok()) << audit.status();
+  EXPECT_EQ(audit->constraints.size(), 150u);
+  EXPECT_EQ(audit->num_doubtful, 0u);
+  EXPECT_LT(audit->quality_before.contradiction_ratio, 0.01);
+}
+
 // Users' maps have no truth; this one has no constraint that looks wrong.
 TEST(RealMapAuditTest, LeavesTheArenaAsItIs) {
   SKIP_WITHOUT_SHARED_DATA("user_map_arena.pbstream");

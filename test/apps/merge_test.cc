@@ -57,6 +57,7 @@ class MergingTest : public ::testing::Test {
   static MergingResult MergeCredulously(const std::vector<std::string>& paths) {
     LocalizationOptions credulous;
     credulous.placement.max_contradicting_fraction = 1.;
+    credulous.placement.max_crossed_fraction = 1.;
     credulous.placement.min_score = 1.;
     FoldCheckOptions strict;
     strict.max_contradiction_ratio = 0.05;
