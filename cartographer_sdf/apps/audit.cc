@@ -391,8 +391,8 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
                   clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   const PoseGraph& pose_graph = map->state.pose_graph;
-  const GroupedConstraints grouped = GroupConstraints(
-      options.grouping, pose_graph, CentroidsOf(map->places));
+  const GroupedConstraints grouped =
+      GroupConstraints(options.grouping, pose_graph, CentroidsOf(map->places));
   audit.groups = ExamineGroups(match, options, map->places, grouped.groups,
                                executor, clock.Begin("compare submaps"));
   for (AuditedGroup& group : audit.groups) {

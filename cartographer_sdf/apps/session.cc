@@ -173,6 +173,15 @@ Localization LocalizeIn(const LocalizationOptions& options,
       executor, on_stage);
   result.reason +=
       ExplainRefusal(result, map, options.placement.min_observed_area);
+  if (result.T_map_query) {
+    std::vector<PairPose> agreeing;
+    for (const size_t vote : result.placements.front().votes) {
+      agreeing.push_back(result.matches[vote].pair);
+    }
+    result.changes =
+        FindChanges({&map.places, &map_layout}, {&query.places, &query_layout},
+                    agreeing, executor);
+  }
   return result;
 }
 

@@ -19,6 +19,7 @@
 #include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/stage_clock.h"
+#include "cartographer_sdf/localization/changes.h"
 #include "cartographer_sdf/localization/confirmation.h"
 #include "cartographer_sdf/localization/placement.h"
 #include "cartographer_sdf/place/place.h"
@@ -80,6 +81,8 @@ struct Localization {
   // Among so many pairs that it makes overlap; 0 if it was not confirmed.
   int num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
+  // What changed since the map was made, if localised and asked for.
+  std::vector<Change> changes;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 

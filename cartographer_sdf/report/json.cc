@@ -75,6 +75,20 @@ Json SessionsJson(const MergingResult& result) {
   return json;
 }
 
+// Boxes in the map frame.
+Json ChangesJson(const std::vector<Change>& changes) {
+  Json json = Json::array();
+  for (const Change& change : changes) {
+    json.push_back({{"kind", ChangeKindName(change.kind)},
+                    {"x_min", change.box.min().x()},
+                    {"y_min", change.box.min().y()},
+                    {"x_max", change.box.max().x()},
+                    {"y_max", change.box.max().y()},
+                    {"wall_area", change.wall_area}});
+  }
+  return json;
+}
+
 // `certain` and `pose` are the names of members.
 Json AnswerJson(const Localization& result, const char* const certain,
                 const char* const pose) {
@@ -87,7 +101,9 @@ Json AnswerJson(const Localization& result, const char* const certain,
           {"agreeing", result.num_agreeing},
           {"contradicting", result.num_contradicting},
           {"compared", result.num_compared},
-          {"crossed", result.crossing_walls.size()}};
+          {"crossed", result.crossing_walls.size()},
+          {"changed_area", ChangedArea(result.changes)},
+          {"changes", ChangesJson(result.changes)}};
 }
 
 Json LinksJson(const std::vector<SessionLink>& links) {

@@ -42,6 +42,9 @@ void PrintSummary(const MergingResult& result) {
     std::cout << absl::StrFormat(
         "  %d and %d: %s, %s\n", link.first + 1, link.second + 1,
         LocalizationVerdictName(found.verdict), found.reason);
+    if (found.T_map_query) {
+      std::cout << "    " << DescribeChanges(found.changes) << "\n";
+    }
   }
   PrintStatuses("closures ", result.closed.closures);
   std::cout << absl::StrFormat(

@@ -199,6 +199,9 @@ void PrintSummary(const Localization& result) {
     std::cout << absl::StrFormat("; %d matches agree, %d contradict\n",
                                  result.num_agreeing, result.num_contradicting);
   }
+  if (result.T_map_query) {
+    std::cout << "  " << DescribeChanges(result.changes) << "\n";
+  }
   for (const auto& [stage, seconds] : result.stage_seconds) {
     std::cout << absl::StrFormat("  %7.3f s %s\n", seconds, stage);
   }

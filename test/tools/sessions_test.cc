@@ -67,7 +67,8 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
       NamesOfAnswer(json),
       ElementsAre("localized", "verdict", "reason", "T_map_query", "score",
                   "runner_up_score", "agreeing", "contradicting", "compared",
-                  "crossed", "closures", "placements", "milliseconds"));
+                  "crossed", "changed_area", "changes", "closures",
+                  "placements", "milliseconds"));
   EXPECT_EQ(json["status"], "done");
   EXPECT_EQ(json["localized"], true);
   EXPECT_EQ(json["verdict"], "localized");
