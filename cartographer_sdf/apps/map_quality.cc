@@ -73,13 +73,9 @@ std::vector<PlacePair> FindOverlappingPairs(
   return pairs;
 }
 
-MapQuality MeasureMapQuality(const AgreementOptions& options,
-                             const int min_index_gap,
-                             const std::map<SubmapId, Place>& places,
-                             const PoseGraph& pose_graph,
-                             const Executor& executor) {
-  const std::vector<PlacePair> pairs =
-      FindOverlappingPairs(min_index_gap, places, pose_graph, executor);
+MapQuality CompareWalls(const AgreementOptions& options,
+                        const std::vector<PlacePair>& pairs,
+                        const Executor& executor) {
   const std::vector<size_t> chosen =
       EvenlySpacedIndices(pairs.size(), std::min(pairs.size(), kMaxNumPairs));
   std::vector<PairAgreement> agreements(chosen.size());
@@ -101,6 +97,17 @@ MapQuality MeasureMapQuality(const AgreementOptions& options,
   }
   return {chosen.size(), sum.HitRatio(), sum.ContradictionRatio(),
           sum.hits > 0. ? std::sqrt(sum.squared_distance / sum.hits) : 0.};
+}
+
+MapQuality MeasureMapQuality(const AgreementOptions& options,
+                             const int min_index_gap,
+                             const std::map<SubmapId, Place>& places,
+                             const PoseGraph& pose_graph,
+                             const Executor& executor) {
+  return CompareWalls(
+      options,
+      FindOverlappingPairs(min_index_gap, places, pose_graph, executor),
+      executor);
 }
 
 }  // namespace cartographer_sdf

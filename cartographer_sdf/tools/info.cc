@@ -5,12 +5,16 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/apps/map_examination.h"
 #include "cartographer_sdf/closing/torn_submaps.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/progress.h"
@@ -21,6 +25,10 @@
 DEFINE_bool(torn_submaps, false,
             "Also look for submaps that local SLAM tore; reads all scans, "
             "which takes some seconds for a hundred submaps.");
+
+DEFINE_bool(quality, false,
+            "Also measure how well the map agrees with itself, and say what is "
+            "wrong with it and what improves it; includes --torn_submaps.");
 
 namespace cartographer_sdf {
 namespace {
@@ -75,11 +83,78 @@ void RecordContents(const MapState& state, RunRecord* const record) {
                                state.num_unrecorded_nodes));
 }
 
+std::string DescribeWalls(const std::string& what, const MapQuality& quality) {
+  if (quality.num_pairs == 0) return absl::StrCat("  ", what, ": none\n");
+  return absl::StrFormat(
+      "  %s (%d pairs): %.1f %% of their walls agree, to %.3f m; %.2f %% stand "
+      "in free space\n",
+      what, quality.num_pairs, 100. * quality.hit_ratio, quality.wall_distance,
+      100. * quality.contradiction_ratio);
+}
+
+std::string DescribeQuality(const MapExamination& map) {
+  std::string text = "\nQuality\n";
+  absl::StrAppend(
+      &text, DescribeWalls("places seen twice", map.whole),
+      DescribeWalls("submaps two apart in local SLAM", map.along_trajectories),
+      absl::StrFormat("  links of local SLAM that walls contradict: %d\n",
+                      map.broken_links.size()));
+  for (const SubmapId& id : map.broken_links) {
+    absl::StrAppend(&text, "    behind submap ", id.trajectory, ",", id.index,
+                    "\n");
+  }
+  absl::StrAppend(&text, "  submaps that resemble themselves in another pose: ",
+                  map.num_self_similar, " of ", map.num_places, "\n");
+  const std::vector<std::string> advice = AdviseOnMap(map);
+  if (advice.empty()) absl::StrAppend(&text, "  nothing to improve\n");
+  for (const std::string& sentence : advice) {
+    absl::StrAppend(&text, "  - ", sentence, "\n");
+  }
+  return text;
+}
+
+void RecordQuality(const MapExamination& map, RunRecord* const record) {
+  Json broken_links = Json::array();
+  for (const SubmapId& id : map.broken_links)
+    broken_links.push_back(ToJson(id));
+  record->answer["quality"] = {
+      {"walls", ToJson(map.whole)},
+      {"walls_along_trajectories", ToJson(map.along_trajectories)},
+      {"broken_links", std::move(broken_links)},
+      {"self_similar", map.num_self_similar},
+      {"places", map.num_places},
+      {"mean_area", map.mean_area},
+      {"advice", Json(AdviseOnMap(map))}};
+}
+
+// For --quality.
+absl::StatusOr<std::string> Examine(StageProgress* const progress,
+                                    RunRecord* const record) {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const LoopClosingOptions& loop_closing = options->loop_closing;
+  const Executor executor = MakeExecutor(*num_threads);
+  const absl::StatusOr<DescribedMap> map =
+      DescribeMap(loop_closing.place, loop_closing.recognition.match,
+                  {FLAGS_input, MissingRecords::kDrop}, executor,
+                  progress->Begin("read and describe"), PointClouds::kKeep);
+  if (!map.ok()) return map.status();
+  const MapExamination examination =
+      ExamineMap(loop_closing, *map, executor, progress->Callback());
+  RecordTornSubmaps(examination.torn_submaps, record);
+  RecordQuality(examination, record);
+  return absl::StrCat(DescribeTornSubmaps(examination.torn_submaps),
+                      DescribeQuality(examination));
+}
+
 absl::Status RunInfo(RunRecord* const record) {
   StageProgress progress(record);
   std::map<NodeId, PointCloud2> scans;
   MapVisitor visitor;
-  if (FLAGS_torn_submaps) {
+  const bool only_tears = FLAGS_torn_submaps && !FLAGS_quality;
+  if (only_tears) {
     visitor.on_point_cloud = [&scans](const NodeId& id, PointCloud2 scan) {
       scans.emplace(id, std::move(scan));
     };
@@ -89,12 +164,16 @@ absl::Status RunInfo(RunRecord* const record) {
   if (!state.ok()) return state.status();
   RecordContents(*state, record);
   std::string text = DescribeMap(FLAGS_input, *state);
-  if (FLAGS_torn_submaps) {
+  if (only_tears) {
     const absl::StatusOr<std::map<SubmapId, Tear>> torn_submaps =
         TornSubmapsOf(*state, scans, &progress);
     if (!torn_submaps.ok()) return torn_submaps.status();
     RecordTornSubmaps(*torn_submaps, record);
     text += DescribeTornSubmaps(*torn_submaps);
+  } else if (FLAGS_quality) {
+    const absl::StatusOr<std::string> examined = Examine(&progress, record);
+    if (!examined.ok()) return examined.status();
+    text += *examined;
   }
   std::cout << text;
   return absl::OkStatus();
@@ -106,13 +185,16 @@ Subcommand Info() {
   Subcommand subcommand{
       "info",
       "describe the contents of a map",
-      "A.pbstream [--torn_submaps] [--result R.json]",
+      "A.pbstream [--torn_submaps | --quality] [--result R.json]",
       "Prints the format, trajectories, submaps, constraints and records of a "
       "map of Cartographer 2D and, with --torn_submaps, the submaps that local "
-      "SLAM tore. Does not change the map.",
+      "SLAM tore. --quality measures, without a truth, whether places that "
+      "were seen twice agree, how noisy local SLAM is and where it slipped, "
+      "and how many submaps resemble themselves, and advises. Does not change "
+      "the map.",
       {{"input", FileUse::kRead}},
-      {"torn_submaps", "configuration_directory", "configuration_basename",
-       "threads"},
+      {"torn_submaps", "quality", "configuration_directory",
+       "configuration_basename", "threads"},
       &RunInfo};
   subcommand.positional_flags = {"input"};
   return subcommand;

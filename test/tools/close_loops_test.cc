@@ -113,6 +113,14 @@ TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
   // Only on demand: it takes time.
   EXPECT_THAT(RunTestProgram({"info", "--input", slipped}).output,
               Not(HasSubstr("Torn")));
+  const ProgramResult quality =
+      RunTestProgram({"info", "--input", slipped, "--quality"});
+  EXPECT_EQ(quality.exit_code, 0) << quality.error;
+  EXPECT_THAT(
+      quality.output,
+      AllOf(HasSubstr("Torn submaps: 2\n"), HasSubstr("places seen twice ("),
+            HasSubstr("submaps two apart in local SLAM ("),
+            HasSubstr("- local SLAM slipped: 2 submaps are torn inside")));
   const ProgramResult closed = RunTestProgram(
       {"close_loops", "--input", slipped, "--output",
        File("slipped_closed.pbstream"), "--report", File("slipped_report")});
