@@ -3,10 +3,9 @@
 
 #include "cartographer_sdf/live/operator_view.h"
 
-#include <cmath>
-
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/localization/probability.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -84,16 +83,12 @@ std::vector<SegmentGroup> DrawMatches(
 Probabilities ProbabilitiesOf(const LocalizationResult& result) {
   Probabilities probabilities;
   if (!result.T_map_tracking) return probabilities;
-  // Scores are log-odds against neither being right.
-  const double best = result.score;
   if (!result.T_map_runner_up) {
-    probabilities.best = 1. / (1. + std::exp(-best));
+    probabilities.best = ProbabilityOf(result.score);
     return probabilities;
   }
-  const double other = result.runner_up_score;
-  probabilities.best = 1. / (1. + std::exp(-best) + std::exp(other - best));
-  probabilities.runner_up =
-      1. / (1. + std::exp(-other) + std::exp(best - other));
+  probabilities.best = ProbabilityOf(result.score, result.runner_up_score);
+  probabilities.runner_up = ProbabilityOf(result.runner_up_score, result.score);
   return probabilities;
 }
 

@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
+
+#include "cartographer_sdf/localization/probability.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -92,10 +95,19 @@ Json ChangesJson(const std::vector<Change>& changes) {
 // `certain` and `pose` are the names of members.
 Json AnswerJson(const Localization& result, const char* const certain,
                 const char* const pose) {
+  std::optional<double> best, runner_up;
+  if (result.score) {
+    best = ProbabilityOf(*result.score, result.runner_up_score);
+  }
+  if (result.score && result.runner_up_score) {
+    runner_up = ProbabilityOf(*result.runner_up_score, result.score);
+  }
   return {{certain, result.T_map_query.has_value()},
           {"verdict", LocalizationVerdictName(result.verdict)},
           {"reason", result.reason},
           {pose, ToJson(result.T_map_query)},
+          {"probability", ToJson(best)},
+          {"runner_up_probability", ToJson(runner_up)},
           {"score", ToJson(result.score)},
           {"runner_up_score", ToJson(result.runner_up_score)},
           {"agreeing", result.num_agreeing},

@@ -13,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/apps/merge.h"
 #include "cartographer_sdf/apps/session.h"
+#include "cartographer_sdf/localization/probability.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_summary.h"
@@ -192,9 +193,12 @@ void PrintSummary(const Localization& result) {
   }
   std::cout << "  " << result.reason << "\n";
   if (result.score) {
-    std::cout << absl::StrFormat("  score %.1f (log-odds)", *result.score);
-    if (result.runner_up_score) {
-      std::cout << absl::StrFormat(", runner-up %.1f", *result.runner_up_score);
+    const std::optional<double>& other = result.runner_up_score;
+    std::cout << "  probability "
+              << FormatProbability(ProbabilityOf(*result.score, other));
+    if (other) {
+      std::cout << ", runner-up "
+                << FormatProbability(ProbabilityOf(*other, result.score));
     }
     std::cout << absl::StrFormat("; %d matches agree, %d contradict\n",
                                  result.num_agreeing, result.num_contradicting);
