@@ -39,8 +39,10 @@ size_t LargestGroup(const std::vector<size_t>& groups) {
       ->first;
 }
 
+// A session in which the robot was carried has no one pose.
 bool IsCertain(const SessionLink& link) {
-  return link.localization.verdict == LocalizationVerdict::kLocalized;
+  return link.localization.verdict == LocalizationVerdict::kLocalized &&
+         link.localization.parts.jumps.empty();
 }
 
 // For each session, the lowest index of those that certain links connect.
@@ -315,6 +317,20 @@ std::string FindRefusal(const MergingResult& result,
   return "";
 }
 
+// Names the jump if one is the reason.
+std::string DescribeDisconnected(const MergingResult& result, const size_t k) {
+  for (const SessionLink& link : result.links) {
+    if ((link.first != k && link.second != k) ||
+        link.localization.parts.jumps.empty()) {
+      continue;
+    }
+    const size_t other = link.first == k ? link.second : link.first;
+    return absl::StrCat("not at one pose in ", result.sessions[other].path,
+                        ": ", link.localization.reason);
+  }
+  return "not connected with the other maps";
+}
+
 // Says of each session that is not in the map why.
 void ExplainLeftOut(const std::map<size_t, std::string>& faults,
                     MergingResult* const result) {
@@ -322,9 +338,8 @@ void ExplainLeftOut(const std::map<size_t, std::string>& faults,
     MergedSession& session = result->sessions[k];
     if (session.T_merged_session) continue;
     const auto fault = faults.find(k);
-    session.left_out = fault != faults.end()
-                           ? fault->second
-                           : "not connected with the other maps";
+    session.left_out = fault != faults.end() ? fault->second
+                                             : DescribeDisconnected(*result, k);
   }
 }
 

@@ -199,6 +199,13 @@ class Localizer {
     result_.reason =
         absl::StrFormat("%d matches of submaps agree", placement.votes.size());
     result_.T_map_query = placement.T_map_query;
+    std::vector<PairPose> votes;
+    for (const Match& match : result_.matches) votes.push_back(match.pair);
+    result_.parts = FindQueryParts(task_.placement, task_.consistency,
+                                   task_.layouts(), votes, result_.placements);
+    if (!result_.parts.jumps.empty()) {
+      result_.reason += "; " + DescribeJumps(result_.parts.jumps);
+    }
   }
 
   void RefuseWithoutPlacement() {
@@ -263,6 +270,7 @@ class Localizer {
   void Decide() {
     const PlacementOptions& options = task_.placement;
     result_.T_map_query.reset();
+    result_.parts = {};
     result_.runner_up_score.reset();
     if (result_.placements.empty()) return RefuseWithoutPlacement();
     const Placement& best = result_.placements.front();

@@ -22,6 +22,7 @@
 #include "cartographer_sdf/localization/changes.h"
 #include "cartographer_sdf/localization/confirmation.h"
 #include "cartographer_sdf/localization/placement.h"
+#include "cartographer_sdf/localization/query_parts.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
 
@@ -72,6 +73,9 @@ struct Localization {
   // vote for, best first, whether localised or not.
   std::vector<Match> matches;
   std::vector<Placement> placements;
+  // The parts of the query that lie at poses of their own, if localised: one,
+  // whose pose is T_map_query, unless the query drifted or jumped.
+  QueryParts parts;
   // Number of votes for the best placement, and number of votes that it
   // excludes plus contradictions: pairs of submaps that it makes overlap and
   // that contradict each other there.

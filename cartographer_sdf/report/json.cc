@@ -92,6 +92,28 @@ Json ChangesJson(const std::vector<Change>& changes) {
   return json;
 }
 
+Json PartsJson(const QueryParts& parts) {
+  Json json = Json::array();
+  for (const QueryPart& part : parts.parts) {
+    json.push_back({{"first", ToJson(part.first)},
+                    {"last", ToJson(part.last)},
+                    {"T_map_query", ToJson(part.placement.T_map_query)},
+                    {"matches", part.placement.votes.size()},
+                    {"score", part.placement.score}});
+  }
+  return json;
+}
+
+Json JumpsJson(const QueryParts& parts) {
+  Json json = Json::array();
+  for (const Jump& jump : parts.jumps) {
+    json.push_back({{"before", ToJson(jump.before)},
+                    {"after", ToJson(jump.after)},
+                    {"distance", jump.distance}});
+  }
+  return json;
+}
+
 // `certain` and `pose` are the names of members.
 Json AnswerJson(const Localization& result, const char* const certain,
                 const char* const pose) {
@@ -114,6 +136,8 @@ Json AnswerJson(const Localization& result, const char* const certain,
           {"contradicting", result.num_contradicting},
           {"compared", result.num_compared},
           {"crossed", result.crossing_walls.size()},
+          {"parts", PartsJson(result.parts)},
+          {"jumps", JumpsJson(result.parts)},
           {"changed_area", ChangedArea(result.changes)},
           {"changes", ChangesJson(result.changes)}};
 }

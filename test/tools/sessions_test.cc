@@ -63,12 +63,13 @@ TEST_F(SessionsTest, RelocalizesAndAttaches) {
   EXPECT_EQ(result.error, "");
   EXPECT_THAT(result.output, StartsWith("localized: x "));
   const Json json = ParseFile("found.json");
-  EXPECT_THAT(NamesOfAnswer(json),
-              ElementsAre("localized", "verdict", "reason", "T_map_query",
-                          "probability", "runner_up_probability", "score",
-                          "runner_up_score", "agreeing", "contradicting",
-                          "compared", "crossed", "changed_area", "changes",
-                          "closures", "placements", "milliseconds"));
+  EXPECT_THAT(
+      NamesOfAnswer(json),
+      ElementsAre("localized", "verdict", "reason", "T_map_query",
+                  "probability", "runner_up_probability", "score",
+                  "runner_up_score", "agreeing", "contradicting", "compared",
+                  "crossed", "parts", "jumps", "changed_area", "changes",
+                  "closures", "placements", "milliseconds"));
   EXPECT_EQ(json["status"], "done");
   EXPECT_EQ(json["localized"], true);
   EXPECT_EQ(json["verdict"], "localized");
