@@ -10,6 +10,7 @@ set -euo pipefail
 usage() {
   cat <<END
 usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [--ros]
+                                        [--documentation]
   --development  also what the static checks (clang-format, clang-tidy),
                  learning the score's weights (numpy), and the pictures of the
                  Python example (matplotlib) need
@@ -18,6 +19,7 @@ usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [
                  with the Python module
   --ros          also what the nodes for ROS 1 and scripts/test_ros.sh need,
                  besides an installed cartographer_ros
+  --documentation  also what scripts/build_site.sh needs
 END
 }
 
@@ -54,6 +56,10 @@ ROS_PACKAGES=(
   iproute2 util-linux
 )
 
+# The generator of the site, its theme, Markdown and buttons, and the comments of
+# headers.
+DOCUMENTATION_PACKAGES=(python3-sphinx furo python3-myst-parser python3-sphinx-copybutton doxygen)
+
 fail() {
   echo "install_dependencies.sh: $*" >&2
   exit 1
@@ -65,6 +71,7 @@ while (($# > 0)); do
     --python) PACKAGES+=("${PYTHON_PACKAGES[@]}") ;;
     --packages) PACKAGES+=("${PACKAGING_PACKAGES[@]}") ;;
     --ros) PACKAGES+=("${ROS_PACKAGES[@]}") ;;
+    --documentation) PACKAGES+=("${DOCUMENTATION_PACKAGES[@]}") ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
   esac

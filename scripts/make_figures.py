@@ -1,32 +1,33 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the pictures of README.md, or the paper's figures of any map.
+"""Makes the pictures of the documentation, or the paper's figures of any map.
 
 usage: make_figures.py [PROGRAM, default build/cartographer_sdf]
+       make_figures.py --data DIRECTORY [--program PROGRAM]
        make_figures.py --paper MAP.pbstream TRUTH.csv OUTPUT_DIRECTORY
                        [QUERY.pbstream QUERY_TRUTH.csv] [--program PROGRAM]
 
-The first simulates a map, closes its loops, and takes the two maps out of the
-report: docs/images/before.png and after.png. The second draws, after the
-figures of Millane et al. 2019: a probability grid beside its distance field
-(Fig. 2), the field as a surface with keypoints by class (Fig. 3), a feature with
-its window of weighted gradients and its histogram (Fig. 4), precision and recall
-(Fig. 5 and 7), masks (Fig. 6), and a match within the map and of the query in
-the map (Fig. 1 and 8).
+The first simulates maps and draws demo.png, two_sessions.png and
+symptom_wrong.png of docs/images. The second draws those of real maps:
+killian.png, symptom_twice.png and symptom_torn.png. The third draws, after the figures of Millane et al. 2019: a
+probability grid beside its distance field (Fig. 2), the field as a surface with
+keypoints by class (Fig. 3), a feature with its window of weighted gradients and
+its histogram (Fig. 4), precision and recall (Fig. 5 and 7), masks (Fig. 6), and
+a match within the map and of the query in the map (Fig. 1 and 8).
 """
 
 import argparse
-import base64
 import collections
 import pathlib
-import re
 import shutil
 import subprocess
 import tempfile
 
+import draw_maps
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
-PICTURE_PIXELS = 700
+IMAGES = SOURCE / "docs" / "images"
 
 
 # What `figures` draws of a submap, and what it shows.
@@ -113,11 +114,54 @@ def draw_paper(arguments):
         print(output / name)
 
 
+class MapDrawer:
+    """Runs the program in a folder and draws maps beside each other."""
+
+    def __init__(self, program, folder):
+        self.program = str(program)
+        self.folder = pathlib.Path(folder)
+
+    def run(self, *words):
+        subprocess.run([self.program, *map(str, words)], check=True, cwd=self.folder, stdout=subprocess.DEVNULL)
+
+    def draw(self, picture, maps, pixel, bar, window=None):
+        for path in maps:
+            self.run("export", path, "--map_filestem", pathlib.Path(path).stem)
+        yamls = [self.folder / f"{pathlib.Path(path).stem}.yaml" for path in maps]
+        (IMAGES / picture).write_bytes(draw_maps.draw(yamls, pixel, window, bar))
+        print(IMAGES / picture)
+
+
+def draw_simulated(drawer):
+    drawer.run("simulate", "-o", "monday.pbstream", "--truth", "monday.csv")
+    drawer.run("simulate", "-o", "tuesday.pbstream", "--truth", "tuesday.csv", "--seed", 2, "--length", 150)
+    drawer.run("close_loops", "monday.pbstream", "-o", "monday_closed.pbstream")
+    drawer.run("merge", "monday_closed.pbstream", "tuesday.pbstream", "-o", "merged.pbstream")
+    drawer.draw("demo.png", ("monday.pbstream", "monday_closed.pbstream"), 0.1, 5)
+    drawer.draw("two_sessions.png", ("monday_closed.pbstream", "tuesday.pbstream", "merged.pbstream"), 0.15, 5)
+    drawer.run("falsify", "monday.pbstream", "-o", "spoilt.pbstream", "--wrong_constraints", "wrong.csv",
+               "--kinds", "random", "--pairs", 1, "--seed", 3)
+    drawer.run("close_loops", "spoilt.pbstream", "-o", "closed.pbstream")
+    drawer.run("audit", "closed.pbstream", "-o", "mended.pbstream")
+    drawer.draw("symptom_wrong.png", ("spoilt.pbstream", "mended.pbstream"), 0.1, 5)
+
+
+def draw_real(drawer, data):
+    killian = data / "mit_killian_open_loop.pbstream"
+    drawer.run("close_loops", killian, "-o", "closed.pbstream")
+    drawer.draw("killian.png", (killian, "closed.pbstream"), 0.5, 50)
+    drawer.draw("symptom_twice.png", (killian, "closed.pbstream"), 0.2, 10, (-110, -20, 20, 90))
+    drawer.run("figures", data / "fr079.pbstream", "--submap", "0,20", "-o", "torn")
+    shutil.copy(drawer.folder / "torn" / "grid.png", IMAGES / "symptom_torn.png")
+    print(IMAGES / "symptom_torn.png")
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("readme_program", nargs="?", metavar="PROGRAM")
+    parser.add_argument("drawing_program", nargs="?", metavar="PROGRAM")
     parser.add_argument("--program", default=SOURCE / "build" / "cartographer_sdf")
+    parser.add_argument("--data", type=pathlib.Path, metavar="DIRECTORY")
     parser.add_argument("--paper", nargs="+", metavar="FILE")
     arguments = parser.parse_args()
     if arguments.paper:
@@ -125,27 +169,13 @@ def main():
             parser.error("--paper takes three files, or five")
         draw_paper(arguments)
         return
-    program = arguments.readme_program or str(arguments.program)
-    with tempfile.TemporaryDirectory() as directory:
-        work = pathlib.Path(directory)
-        (work / "figures.lua").write_text(
-            'include "sdf_global_constraints.lua"\n'
-            f"SDF_GLOBAL_CONSTRAINTS.report.map_picture_pixels = {PICTURE_PIXELS}\n"
-            "return SDF_GLOBAL_CONSTRAINTS\n")
-        for arguments in (
-                ["simulate", "--output", f"{work}/open_loop.pbstream", "--truth", f"{work}/truth.csv"],
-                ["close_loops", "--input", f"{work}/open_loop.pbstream", "--output",
-                 f"{work}/closed.pbstream", "--report", f"{work}/report",
-                 "--configuration_directory", str(work),
-                 "--configuration_basename", "figures.lua"]):
-            subprocess.run([program, *arguments], check=True, stdout=subprocess.DEVNULL)
-        page = (work / "report" / "index.html").read_text()
-    pictures = re.findall(r"data:image/png;base64,([A-Za-z0-9+/=]+)", page)
-    images = SOURCE / "docs" / "images"
-    images.mkdir(parents=True, exist_ok=True)
-    for name, picture in zip(("before", "after"), pictures):
-        (images / f"{name}.png").write_bytes(base64.b64decode(picture))
-        print(images / f"{name}.png")
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        drawer = MapDrawer(pathlib.Path(arguments.drawing_program or arguments.program).resolve(), folder)
+        if arguments.data:
+            draw_real(drawer, arguments.data.resolve())
+        else:
+            draw_simulated(drawer)
 
 
 if __name__ == "__main__":
