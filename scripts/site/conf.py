@@ -8,17 +8,18 @@ import os
 
 project = "cartographer_sdf"
 author = "The cartographer_sdf authors"
-project_copyright = "2026 The cartographer_sdf authors, Apache-2.0"
-version = release = os.environ.get("SITE_VERSION", "")
+version = release = os.environ.get("SITE_VERSION", "")  # With the commit.
+project_copyright = f"2026 The cartographer_sdf authors, Apache-2.0. Version {version}"
 
 extensions = ["myst_parser", "sphinx_copybutton"]
 highlight_language = "none"
+smartquotes = False  # Flags begin with two hyphens.
 myst_enable_extensions = ["deflist"]
 # The same anchors as in a browser of the repository.
 myst_heading_anchors = 4
 
 html_theme = "furo"
-html_title = f"cartographer_sdf {version}".strip()
+html_title = f"cartographer_sdf {version.partition(' ')[0]}".strip()
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = False

@@ -129,7 +129,7 @@ class Compounds:
         name = compound.findtext("compoundname").split(f"{NAMESPACE}::")[-1]
         if "<" in name:  # A specialisation has nothing of its own to say.
             return []
-        bases = [f"public {''.join(base.itertext())}" for base in compound.findall("basecompoundref")
+        bases = ["public " + "".join(base.itertext()).removeprefix(f"{NAMESPACE}::") for base in compound.findall("basecompoundref")
                  if base.get("prot") == "public"]
         text = f"{template_of(compound)}{compound.get('kind')} {name}"
         lines = [f"### `{tidy(text + (' : ' + ', '.join(bases) if bases else ''))}`", ""]

@@ -150,14 +150,15 @@ def options_page(path):
             lines += lua_example(prose)
         else:
             lines += [escape(paragraph), ""]
-    table = None
+    root, table = options.options[0][0].partition(".")[0], None
+    lines += [f"All names are below `{root}`.", ""]
     for name, key, value, comment in options.options:
         if name != table:
             table = name
-            lines += [f"## {table}", ""]
+            lines += [f"## {table.removeprefix(root + '.')}", ""]
             if options.tables.get(table):
                 lines += [escape(options.tables[table]), ""]
-        lines += [f"`{key}` = `{value}`", f": {escape(comment) or 'As the one above.'}", ""]
+        lines += [f"`{key}` = `{value}`", f": {escape(comment) or 'See above.'}", ""]
     return "\n".join(lines) + "\n" + generated_from(f"configuration_files/{path.name}")
 
 

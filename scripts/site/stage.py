@@ -159,13 +159,24 @@ def stage_reference(site, program):
     site.write("reference/ros.md", reference.ros_page(site.source / "ros"))
 
 
+def folder_summaries(overview):
+    """What the table of folders in docs/design/overview.md says of each."""
+    summaries = {}
+    for names, text in re.findall(r"^\| ((?:`\w+/`(?:, )?)+) \| (.+) \|$", overview, re.MULTILINE):
+        for name in re.findall(r"`(\w+)/`", names):
+            summaries[name] = text[0].upper() + text[1:]
+    return summaries
+
+
 def stage_cpp(site, doxygen_xml):
-    """Without Doxygen's XML the pages list the headers only."""
     compounds = cpp_reference.Compounds(doxygen_xml)
+    overview = "docs/design/overview.md"
+    summaries = folder_summaries(site.rewrite((site.source / overview).read_text(encoding="utf-8"), overview,
+                                              "reference/cpp/folder.md"))
     lines = ["# C++ API", "", "The headers, folder by folder; all names are in the namespace `cartographer_sdf`. "
              "How the folders depend on each other: [overview](../../design/overview.md#the-tree).", ""]
     for folder in site.cpp_folders:
-        summary = f"Headers in `cartographer_sdf/{folder}/`."
+        summary = summaries[folder] + "."
         site.write(f"reference/cpp/{folder}.md", cpp_reference.folder_page(
             folder, site.headers(folder), site.source, compounds, summary))
         names = ", ".join(f"`{header.name}`" for header in site.headers(folder))

@@ -68,8 +68,14 @@ class StageTest(unittest.TestCase):
     def test_every_option_has_a_default_and_a_comment(self):
         text = self.text("reference/options/sdf_global_constraints.md")
         self.assertIn("`min_score` = `4.`\n: Least score.", text)
-        self.assertIn("## SDF_GLOBAL_CONSTRAINTS.localization.placement", text)
+        self.assertIn("## localization.placement\n", text)
         self.assertIn("`query_interval_meters` = `0.5`", self.text("reference/options/sdf_live.md"))
+
+    def test_every_folder_of_headers_is_explained(self):
+        summaries = stage.folder_summaries((SOURCE / "docs/design/overview.md").read_text(encoding="utf-8"))
+        self.assertEqual(summaries["file"], "Text and whole files; logs of robots, scans")
+        for folder in self.site.cpp_folders:
+            self.assertIn(folder, summaries)
 
     def test_verdicts_are_named_as_they_are_printed(self):
         text = self.text("reference/verdicts.md")
