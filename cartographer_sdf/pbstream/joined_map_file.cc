@@ -105,7 +105,7 @@ class PartReader {
       const MapPart& part, const ProgressCallback& on_progress,
       Beginning* const beginning) {
     absl::StatusOr<MapReader> reader =
-        MapReader::Open(part.path, {}, on_progress);
+        MapReader::Open(part.path, {}, on_progress, part.odometry_records);
     if (!reader.ok()) return reader.status();
     PartReader result(part, *std::move(reader));
     beginning->header.set_format_version(
@@ -317,7 +317,7 @@ std::vector<MapPart> NumberTrajectories(
   std::vector<MapPart> parts;
   int number = 0;
   for (size_t k = 0; k < paths.size(); ++k) {
-    MapPart part{paths[k], {}};
+    MapPart part{paths[k], {}, maps[k]->odometry_records};
     for (const int trajectory : maps[k]->trajectories) {
       part.trajectories[trajectory] = number++;
     }

@@ -21,10 +21,12 @@ struct MapPart {
   std::string path;
   // New number of each trajectory in the file; distinct across all parts.
   std::map<int, int> trajectories;
+  OdometryRecords odometry_records = OdometryRecords::kKeep;
 };
 
 // Numbers the trajectories of all maps from zero, in the order of the maps and,
-// within each, of its file.
+// within each, of its file. Parts are written as the maps were read: with or
+// without odometry.
 [[nodiscard]] std::vector<MapPart> NumberTrajectories(
     const std::vector<std::string>& paths,
     const std::vector<const MapState*>& maps);

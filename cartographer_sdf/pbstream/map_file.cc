@@ -40,7 +40,7 @@ absl::StatusOr<WrittenMap> CopyMap(const MapSource& input,
                                    const MapVisitor& visitor,
                                    const ProgressCallback& on_progress) {
   absl::StatusOr<MapReader> reader =
-      MapReader::Open(input.path, visitor, on_progress);
+      MapReader::Open(input.path, visitor, on_progress, input.odometry_records);
   if (!reader.ok()) return reader.status();
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(output);
   if (!writer.ok()) return writer.status();
@@ -78,8 +78,8 @@ absl::StatusOr<WrittenMap> CopyMap(const MapSource& input,
 absl::StatusOr<MapState> ReadMap(const MapSource& source,
                                  const MapVisitor& visitor,
                                  const ProgressCallback& on_progress) {
-  absl::StatusOr<MapReader> reader =
-      MapReader::Open(source.path, visitor, on_progress);
+  absl::StatusOr<MapReader> reader = MapReader::Open(
+      source.path, visitor, on_progress, source.odometry_records);
   if (!reader.ok()) return reader.status();
   while (true) {
     const absl::StatusOr<bool> has_record = reader->Next();

@@ -50,16 +50,25 @@ enum class MissingRecords {
   kKeep,    // the pose graph has them: to look at a map, not to change it
 };
 
+// Whether a map is read and written with its odometry, or as if it had none.
+// The host weighs odometry as its own configuration says, which no file can
+// change: a map that is better than its odometry keeps its shape without it.
+enum class OdometryRecords { kKeep, kDrop };
+
 // A map to read. A path alone is one that must be whole.
 struct MapSource {
   MapSource(std::string path,  // NOLINT: a path is a map
-            const MissingRecords missing_records = MissingRecords::kRefuse)
-      : path(std::move(path)), missing_records(missing_records) {}
+            const MissingRecords missing_records = MissingRecords::kRefuse,
+            const OdometryRecords odometry_records = OdometryRecords::kKeep)
+      : path(std::move(path)),
+        missing_records(missing_records),
+        odometry_records(odometry_records) {}
   MapSource(const char* const path)  // NOLINT: as above
       : MapSource(std::string(path)) {}
 
   std::string path;
   MissingRecords missing_records;
+  OdometryRecords odometry_records;
 };
 
 struct MapState {
@@ -74,6 +83,8 @@ struct MapState {
   // Without a record of their own, whatever was made of them.
   int num_unrecorded_submaps = 0;
   int num_unrecorded_nodes = 0;
+  // How it was read; without odometry, none is counted either.
+  OdometryRecords odometry_records = OdometryRecords::kKeep;
 };
 
 // Called for each submap with a grid, to keep or to read. The grid is in the
@@ -127,12 +138,13 @@ struct MapVisitor {
 //   of a submap, node and tag corresponds to the k-th one in the input and
 //   keeps every unchanged value, above all its pose in space. Surplus
 //   constraints of the input are dropped; surplus ones of `pose_graph` are new.
+// - Odometry is left out if the source says so.
 //
 // The output appears complete or not at all, and may be the input. Fails if
 // the input cannot be read, or if `pose_graph` has elements that the input
-// lacks or non-finite numbers. Odometry is not written. Before it appears, the
-// output is read with all checks of ReadMap(), scans included: what the host
-// would not load is never written.
+// lacks or non-finite numbers. Relative odometry of nodes is not written.
+// Before it appears, the output is read with all checks of ReadMap(), scans
+// included: what the host would not load is never written.
 //
 // Decompresses the input once, or twice if `pose_graph` lacks nodes or has
 // other gravity alignments than the input, see map_reader.h.

@@ -53,14 +53,16 @@ bool AreSame(const RecordedElements& a, const RecordedElements& b) {
 
 }  // namespace
 
-absl::StatusOr<MapReader> MapReader::Open(const std::string& path,
-                                          MapVisitor visitor,
-                                          const ProgressCallback& on_progress) {
+absl::StatusOr<MapReader> MapReader::Open(
+    const std::string& path, MapVisitor visitor,
+    const ProgressCallback& on_progress,
+    const OdometryRecords odometry_records) {
   absl::StatusOr<RecordReader> records = RecordReader::Open(path);
   if (!records.ok()) return records.status();
   MapReader reader(*std::move(records));
   reader.visitor_ = std::move(visitor);
   reader.on_progress_ = on_progress;
+  reader.state_.odometry_records = odometry_records;
   const absl::Status status = reader.ReadHeader();
   if (!status.ok()) return status;
   return reader;
@@ -87,6 +89,19 @@ absl::Status MapReader::ReadHeader() {
 }
 
 absl::StatusOr<bool> MapReader::Next() {
+  while (true) {
+    absl::StatusOr<bool> has_record = ReadRecord();
+    if (!has_record.ok() || !*has_record) return has_record;
+    if (state_.odometry_records == OdometryRecords::kDrop &&
+        data_.has_odometry_data()) {
+      continue;
+    }
+    ++state_.num_records[KindName(data_)];
+    return true;
+  }
+}
+
+absl::StatusOr<bool> MapReader::ReadRecord() {
   const absl::StatusOr<bool> has_record = records_.Read(
       &record_, num_records_ == 0 ? kMaxRecordSize : kMaxOtherRecordSize);
   if (!has_record.ok()) return has_record;
@@ -106,7 +121,6 @@ absl::StatusOr<bool> MapReader::Next() {
   if (!data_.ParseFromString(record_)) {
     return Corrupted("is not a valid protocol buffer");
   }
-  ++state_.num_records[KindName(data_)];
   ++num_records_;
   const absl::Status status = num_records_ == 1   ? ReadPoseGraph()
                               : num_records_ == 2 ? ReadOptions()
@@ -129,7 +143,9 @@ absl::StatusOr<MapState> MapReader::Finish(
   if (missing_records == MissingRecords::kDrop) {
     DropUnrecorded(recorded_, &state_.pose_graph);
   }
-  SetRelativeOdometry(odometry_->poses(), &state_.pose_graph.nodes);
+  if (state_.odometry_records == OdometryRecords::kKeep) {
+    SetRelativeOdometry(odometry_->poses(), &state_.pose_graph.nodes);
+  }
   return std::move(state_);
 }
 

@@ -29,10 +29,12 @@ class MapReader {
   // Reads the header. `on_progress` may be empty.
   [[nodiscard]] static absl::StatusOr<MapReader> Open(
       const std::string& path, MapVisitor visitor,
-      const ProgressCallback& on_progress);
+      const ProgressCallback& on_progress,
+      OdometryRecords odometry_records = OdometryRecords::kKeep);
 
   // Advances to the next record and checks it; false at the end of the file. A
-  // file that ends before the options is an error.
+  // file that ends before the options is an error. Where odometry is left out,
+  // its records are checked and passed over.
   [[nodiscard]] absl::StatusOr<bool> Next();
 
   // The current record decoded, as bytes, and compressed as in the file.
@@ -59,6 +61,8 @@ class MapReader {
   explicit MapReader(RecordReader records) : records_(std::move(records)) {}
 
   [[nodiscard]] absl::Status ReadHeader();
+  // Next(), without passing over anything.
+  [[nodiscard]] absl::StatusOr<bool> ReadRecord();
   // Returns an error unless the current record is of this kind.
   [[nodiscard]] absl::Status Expect(proto::SerializedData::DataCase kind,
                                     const char* name) const;

@@ -126,8 +126,18 @@ absl::Status RunAudit(RunRecord* const record) {
   if (!audit.ok()) return audit.status();
   const absl::Status status = WriteFiles(options, *audit, &progress);
   RecordAudit(*audit, record);
-  if (status.ok()) PrintSummary(*audit);
-  return status;
+  if (!status.ok()) return status;
+  PrintSummary(*audit);
+  if (!FLAGS_output.empty()) {
+    WarnOfHostMotion(options.loop_closing.closing, audit->optimization,
+                     audit->pose_graph, record);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CheckFlagsOfAudit() {
+  const absl::Status status = CheckPictureFlags();
+  return status.ok() ? CheckDropOdometry() : status;
 }
 
 }  // namespace
@@ -160,12 +170,13 @@ Subcommand AuditSubcommand() {
        "in_place",
        "backup",
        "repair",
+       "drop_odometry",
        "frozen_trajectories",
        "configuration_directory",
        "configuration_basename",
        "threads"},
       &RunAudit};
-  subcommand.check_flags = &CheckPictureFlags;
+  subcommand.check_flags = &CheckFlagsOfAudit;
   subcommand.positional_flags = {"input"};
   return subcommand;
 }

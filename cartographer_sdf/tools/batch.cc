@@ -79,7 +79,8 @@ BatchSettings SettingsOfFlags() {
   settings.more_flags = {
       absl::StrCat("--threads=", FLAGS_threads > 0 ? FLAGS_threads : 1)};
   for (const char* const name :
-       {"repair", "configuration_directory", "configuration_basename"}) {
+       {"repair", "drop_odometry", "configuration_directory",
+        "configuration_basename"}) {
     const gflags::CommandLineFlagInfo info =
         gflags::GetCommandLineFlagInfoOrDie(name);
     if (info.is_default) continue;
@@ -214,6 +215,7 @@ Subcommand BatchSubcommand() {
        "collect",
        "program",
        "repair",
+       "drop_odometry",
        "configuration_directory",
        "configuration_basename",
        {"threads",

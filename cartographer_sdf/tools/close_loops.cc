@@ -96,8 +96,11 @@ absl::Status RunCloseLoops(RunRecord* const record) {
         &progress);
   }
   RecordClosing(*result, record);
-  if (status.ok()) PrintSummary(*result);
-  return status;
+  if (!status.ok()) return status;
+  PrintSummary(*result);
+  WarnOfHostMotion(task->options.loop_closing.closing, result->optimization,
+                   result->closed.pose_graph, record);
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -107,13 +110,16 @@ Subcommand CloseLoopsSubcommand() {
       "close_loops",
       "find the loop closures of a map and optimise it",
       "A.pbstream (--output B.pbstream | --in_place) [--closures C.csv] "
-      "[--report DIR] [--result R.json] [--repair]",
+      "[--report DIR] [--result R.json] [--repair] [--drop_odometry]",
       "Finds submaps that see the same place by the shape of their free space, "
       "without a pose prior; verifies the matches; keeps a mutually consistent "
       "set; adds it to the pose graph as inter-submap constraints; optimises; "
       "and writes a map that Cartographer's own tools load. Every other record "
       "of the file stays as it is.\n\n"
-      "A map without new closures is copied, byte for byte.",
+      "A map without new closures is copied, byte for byte.\n\n"
+      "Cartographer optimises a map again that it loads unfrozen, with the "
+      "odometry weights of its configuration. If that would bend the map, the "
+      "last lines say how far; --drop_odometry keeps it from doing so.",
       {{"input", FileUse::kRead},
        {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."}},
       {{"closures", FileUse::kWriteText},
@@ -123,6 +129,7 @@ Subcommand CloseLoopsSubcommand() {
        "in_place",
        "backup",
        "repair",
+       "drop_odometry",
        "frozen_trajectories",
        "configuration_directory",
        "configuration_basename",

@@ -34,6 +34,10 @@ DEFINE_bool(backup, true,
 DEFINE_bool(repair, false,
             "Leave out submaps and nodes that the map has poses but no data "
             "of, as after a file was cut. Otherwise it is refused.");
+DEFINE_bool(drop_odometry, false,
+            "Read and write maps as if they had no odometry. Cartographer "
+            "weighs it anew when it loads a map unfrozen, and may bend a map "
+            "that is better than its odometry.");
 
 namespace cartographer_sdf {
 namespace {
@@ -381,7 +385,9 @@ std::string BackupPath(const std::string& path) {
 }
 
 MapSource SourceOfFlags(const std::string& path) {
-  return {path, FLAGS_repair ? MissingRecords::kDrop : MissingRecords::kRefuse};
+  return {
+      path, FLAGS_repair ? MissingRecords::kDrop : MissingRecords::kRefuse,
+      FLAGS_drop_odometry ? OdometryRecords::kDrop : OdometryRecords::kKeep};
 }
 
 void PrintRepair(const MapState& map) {

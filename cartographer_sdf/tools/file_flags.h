@@ -18,6 +18,7 @@
 DECLARE_bool(in_place);
 DECLARE_bool(backup);
 DECLARE_bool(repair);
+DECLARE_bool(drop_odometry);
 
 namespace cartographer_sdf {
 
@@ -103,7 +104,7 @@ struct NamedFile {
 // The name under which --in_place keeps the old map; empty with --nobackup.
 [[nodiscard]] std::string BackupPath(const std::string& path);
 
-// The map at a path, as --repair says.
+// The map at a path, as --repair and --drop_odometry say.
 [[nodiscard]] MapSource SourceOfFlags(const std::string& path);
 
 // Prints what was left out of a map, if anything.

@@ -130,6 +130,9 @@ absl::Status RunMerge(RunRecord* const record) {
   if (!status.ok()) return status;
   PrintSummary(*result);
   PrintPaths();
+  WarnOfHostMotion(options.loop_closing.closing,
+                   options.loop_closing.closing.optimization,
+                   result->closed.pose_graph, record);
   return absl::OkStatus();
 }
 
@@ -155,6 +158,7 @@ Subcommand MergeSubcommand() {
        {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."}},
       {{"report", FileUse::kWriteInto, {"index.html"}},
        "repair",
+       "drop_odometry",
        "frozen_trajectories",
        "configuration_directory",
        "configuration_basename",

@@ -83,8 +83,9 @@ absl::Status CheckQueryFlags() {
 }
 
 absl::Status CheckFlagsOfRelocalize() {
-  const absl::Status query = CheckQueryFlags();
-  if (!query.ok()) return query;
+  absl::Status status = CheckQueryFlags();
+  if (status.ok()) status = CheckDropOdometry();
+  if (!status.ok()) return status;
   const absl::Status window = WindowOfFlags().status();
   if (!window.ok()) return window;
   if (!IsGiven("num_starts")) return absl::OkStatus();
@@ -166,7 +167,8 @@ absl::Status RunManyStarts(const MapTask& task, const DescribedMap& map,
 
 absl::Status WriteCombinedMap(const MapTask& task, const Session& map,
                               const Session& query, const Localization& result,
-                              StageProgress* const progress) {
+                              StageProgress* const progress,
+                              RunRecord* const record) {
   if (!result.T_map_query) {
     return RefusalError(absl::StrCat("nothing is written to ", FLAGS_output,
                                      ": ", query.path, " was not localized in ",
@@ -180,8 +182,14 @@ absl::Status WriteCombinedMap(const MapTask& task, const Session& map,
     return RefusalError(absl::StrCat("nothing is written to ", FLAGS_output,
                                      ": ", merged->refusal));
   }
-  return WriteJoinedMap(merged->parts, merged->closed.pose_graph, FLAGS_output,
-                        progress->Begin("write"));
+  const absl::Status status =
+      WriteJoinedMap(merged->parts, merged->closed.pose_graph, FLAGS_output,
+                     progress->Begin("write"));
+  if (!status.ok()) return status;
+  const ClosingOptions& closing = task.options.loop_closing.closing;
+  WarnOfHostMotion(closing, closing.optimization, merged->closed.pose_graph,
+                   record);
+  return absl::OkStatus();
 }
 
 void PrintSummary(const Localization& result) {
@@ -214,7 +222,8 @@ void PrintSummary(const Localization& result) {
 // Writes the files that the flags ask for.
 absl::Status WriteFiles(const MapTask& task, const Session& map,
                         const Session& query, const Localization& result,
-                        StageProgress* const progress) {
+                        StageProgress* const progress,
+                        RunRecord* const record) {
   absl::Status status;
   if (!FLAGS_report.empty()) {
     status =
@@ -222,7 +231,7 @@ absl::Status WriteFiles(const MapTask& task, const Session& map,
                                   query, result, progress->Begin("report"));
   }
   if (status.ok() && !FLAGS_output.empty()) {
-    status = WriteCombinedMap(task, map, query, result, progress);
+    status = WriteCombinedMap(task, map, query, result, progress, record);
   }
   return status;
 }
@@ -248,7 +257,7 @@ absl::Status RunOnce(const MapTask& task,
   const Session map_session{FLAGS_map, std::move(map), {}};
   RecordAnswer(map_session, *query, result, record);
   const absl::Status status =
-      WriteFiles(task, map_session, *query, result, progress);
+      WriteFiles(task, map_session, *query, result, progress, record);
   if (!status.ok()) return status;
   PrintRepair(map_session.map.state);
   PrintRepair(query->map.state);
@@ -292,8 +301,7 @@ Subcommand RelocalizeSubcommand() {
       "not localized, nothing is written, and the exit code is 3.\n\n"
       "With --scan in place of --query, finds a robot that stands still: all "
       "poses that explain its scans, each with its probability. --map may then "
-      "also be a map of ROS's map_server: its .yaml file, or the .pgm or .png "
-      "image beside it.",
+      "be a map of ROS's map_server, too: its .yaml, .pgm or .png file.",
       {{"map",
         FileUse::kRead,
         {},
@@ -308,6 +316,7 @@ Subcommand RelocalizeSubcommand() {
        {"report", FileUse::kWriteInto, {"index.html"}},
        {"places", FileUse::kCache},
        "repair",
+       "drop_odometry",
        "configuration_directory",
        "configuration_basename",
        "threads"},

@@ -30,6 +30,7 @@ constexpr RunWarning kAllWarnings[] = {RunWarning::kRepaired,
                                        RunWarning::kIncomplete,
                                        RunWarning::kTornSubmaps,
                                        RunWarning::kNotConverged,
+                                       RunWarning::kOdometryBends,
                                        RunWarning::kDoubtful,
                                        RunWarning::kOdometryLeftOut,
                                        RunWarning::kContradictions,
@@ -88,6 +89,8 @@ const char* RunWarningCode(const RunWarning warning) {
       return "torn_submaps";
     case RunWarning::kNotConverged:
       return "not_converged";
+    case RunWarning::kOdometryBends:
+      return "odometry_bends";
     case RunWarning::kDoubtful:
       return "doubtful";
     case RunWarning::kOdometryLeftOut:

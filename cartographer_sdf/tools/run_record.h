@@ -42,6 +42,7 @@ enum class RunWarning {
   kIncomplete,           // records without data are in the map
   kTornSubmaps,          // local SLAM slipped inside of submaps
   kNotConverged,         // the optimisation ran out of iterations
+  kOdometryBends,        // Cartographer will bend the map, loaded unfrozen
   kDoubtful,             // audit found doubtful constraints
   kOdometryLeftOut,      // audit: odometry contradicts right constraints
   kContradictions,       // pairs of submaps of the merged map contradict

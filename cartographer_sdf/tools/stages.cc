@@ -13,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/pending_file.h"
 #include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/pose_graph/host_motion.h"
 #include "cartographer_sdf/tools/file_flags.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/map_picture.h"
@@ -27,6 +28,9 @@ DEFINE_int32(picture_pixels, 1600,
 
 namespace cartographer_sdf {
 namespace {
+
+// Motions that are not worth a warning [m].
+constexpr double kMinHostMotion = 0.1;
 
 // If the map is changed in place, keeps the old one first. At every moment
 // there is a whole map under the name of the input.
@@ -186,6 +190,35 @@ void PrintConvergence(const std::vector<OptimizationSummary>& summaries) {
   if (summaries.empty() || summaries.back().converged) return;
   std::cout << "The optimisation did not converge: " << summaries.back().message
             << "\n";
+}
+
+void WarnOfHostMotion(const ClosingOptions& closing,
+                      const OptimizationOptions& in_force,
+                      const PoseGraph& pose_graph, RunRecord* const record) {
+  const std::optional<HostMotion> motion =
+      PredictHostMotion(closing.optimization, in_force, pose_graph);
+  if (!motion || motion->max_translation < kMinHostMotion) return;
+  const auto format = [](const OdometryWeights& weights) {
+    return absl::StrFormat("%.3g and %.3g", weights.translation,
+                           weights.rotation);
+  };
+  const std::string sentence = absl::StrFormat(
+      "Cartographer would move nodes by up to %.1f m if it loaded this map "
+      "unfrozen, with its odometry weights of %s; those of the map are %s",
+      motion->max_translation, format(motion->host_weights),
+      format(motion->map_weights));
+  record->Warn(RunWarning::kOdometryBends, sentence);
+  std::cout << sentence
+            << ".\n  Load it frozen, set odometry_translation_weight and "
+               "odometry_rotation_weight of POSE_GRAPH.optimization_problem to "
+               "those of the map, or write it with --drop_odometry.\n";
+}
+
+absl::Status CheckDropOdometry() {
+  if (!FLAGS_drop_odometry || !FLAGS_output.empty() || FLAGS_in_place) {
+    return absl::OkStatus();
+  }
+  return UsageError("--drop_odometry needs a map to write: --output");
 }
 
 void PrintPaths() {

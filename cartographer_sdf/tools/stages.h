@@ -15,6 +15,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "cartographer_sdf/closing/pipeline.h"
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/place_store/described_map.h"
@@ -68,6 +69,16 @@ void PrintStatuses(const std::string& prefix,
                    const std::vector<Closure>& closures);
 void PrintConvergence(const std::vector<OptimizationSummary>& summaries);
 void PrintPaths();
+
+// For a task that has written a map: prints and records how far Cartographer,
+// with the weights of `closing.optimization`, would move it; nothing if that is
+// little. `in_force` are those with which the map was optimised.
+void WarnOfHostMotion(const ClosingOptions& closing,
+                      const OptimizationOptions& in_force,
+                      const PoseGraph& pose_graph, RunRecord* record);
+
+// An error if --drop_odometry is given, but no map is written.
+[[nodiscard]] absl::Status CheckDropOdometry();
 
 }  // namespace cartographer_sdf
 

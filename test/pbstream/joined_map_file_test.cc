@@ -278,6 +278,26 @@ TEST_F(JoinedMapFileTest, LeavesOutWhatHasNoRecord) {
   EXPECT_EQ(read->pose_graph.constraints.size(), 8u);
 }
 
+TEST_F(JoinedMapFileTest, LeavesOutOdometryOfMapsThatWereReadWithoutIt) {
+  const absl::StatusOr<MapState> first =
+      ReadMap({paths_[0], MissingRecords::kRefuse, OdometryRecords::kDrop});
+  const absl::StatusOr<MapState> second = ReadMap(paths_[1]);
+  ASSERT_TRUE(first.ok() && second.ok());
+  parts_ = NumberTrajectories(paths_, {&*first, &*second});
+  MapState joined;
+  AppendMap(parts_[0], *first, &joined);
+  AppendMap(parts_[1], *second, &joined);
+  ASSERT_TRUE(WriteJoinedMap(parts_, joined.pose_graph, output_).ok());
+  const absl::StatusOr<MapState> read = ReadMap(output_);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_EQ(read->num_records.at("odometry_data"),
+            second->num_records.at("odometry_data"));
+  for (const auto& [id, node] : read->pose_graph.nodes) {
+    if (id.trajectory != 0) continue;
+    EXPECT_FALSE(node.T_previous_node_by_odometry.has_value());
+  }
+}
+
 TEST_F(JoinedMapFileTest, LeavesNothingBehindWhereItFails) {
   const MapState joined = Join();
   const auto expect_error = [this](const PoseGraph& graph,

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/pbstream/map_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -138,6 +139,43 @@ TEST_F(MapFileTest, ReadsConstraintsLandmarksAndSubmapPoses) {
   ASSERT_THAT(state.pose_graph.landmark_poses, ElementsAre(Key("tag")));
   EXPECT_EQ(state.pose_graph.landmark_poses.at("tag").translation,
             Eigen::Vector3d(1., 2., 3.));
+}
+
+TEST_F(MapFileTest, LeavesOutOdometryAsIfThereWereNone) {
+  const MapSource source(input_, MissingRecords::kRefuse,
+                         OdometryRecords::kDrop);
+  const absl::StatusOr<MapState> state = ReadMap(source);
+  ASSERT_TRUE(state.ok()) << state.status();
+  const MapState with_odometry = Read(input_);
+  EXPECT_EQ(state->num_records.count("odometry_data"), 0u);
+  EXPECT_EQ(state->num_records.size() + 1, with_odometry.num_records.size());
+  for (const auto& [id, node] : state->pose_graph.nodes) {
+    EXPECT_FALSE(node.T_previous_node_by_odometry.has_value());
+    ExpectNear(node.T_map_node,
+               with_odometry.pose_graph.nodes.at(id).T_map_node);
+  }
+  ASSERT_TRUE(WriteMap(source, output_, state->pose_graph).ok());
+  std::vector<std::string> expected = ReadRecords(input_);
+  const auto is_odometry = [](const std::string& record) {
+    proto::SerializedData data;
+    return data.ParseFromString(record) && data.has_odometry_data();
+  };
+  // The header is no record of this kind.
+  const auto end =
+      std::remove_if(expected.begin() + 1, expected.end(), is_odometry);
+  EXPECT_EQ(expected.end() - end, 7);
+  expected.erase(end, expected.end());
+  EXPECT_THAT(ReadRecords(output_), ElementsAreArray(expected));
+}
+
+TEST_F(MapFileTest, ChecksOdometryThatItLeavesOut) {
+  SmallMap map;
+  std::swap(map.odometry[0], map.odometry[1]);
+  Write(map);
+  const absl::Status status =
+      ReadMap({input_, MissingRecords::kRefuse, OdometryRecords::kDrop})
+          .status();
+  EXPECT_THAT(std::string(status.message()), HasSubstr("time"));
 }
 
 TEST_F(MapFileTest, ReadsOdometryBetweenNodes) {
