@@ -80,38 +80,64 @@ Rigid2 PoseAt(const std::vector<TimedPose>& trajectory, const double time) {
   return Rigid2(pose.head<2>(), pose.z());
 }
 
-// A node of a drive: its pose by local SLAM and the true one, and the distance
-// driven in truth.
-struct DrivenNode {
-  Rigid2 T_local_tracking;
-  Rigid2 T_world_tracking;
+// A node or submap of a drive: its pose by local SLAM and the true one, and the
+// distance driven in truth.
+struct DrivenPose {
+  Rigid2 T_local_pose;
+  Rigid2 T_world_pose;
   double distance = 0.;
 };
 
+void AddToDrive(const Rigid2& T_local_pose, const Rigid2& T_world_pose,
+                std::vector<DrivenPose>* const drive) {
+  DrivenPose driven{T_local_pose, T_world_pose, 0.};
+  if (!drive->empty()) {
+    driven.distance =
+        drive->back().distance +
+        (T_world_pose.translation() - drive->back().T_world_pose.translation())
+            .norm();
+  }
+  drive->push_back(driven);
+}
+
 // The nodes of each trajectory that have a true pose.
-std::map<int, std::vector<DrivenNode>> DrivesOf(const PoseGraph& pose_graph,
-                                                const Truth& truth) {
-  std::map<int, std::vector<DrivenNode>> drives;
+std::map<int, std::vector<DrivenPose>> NodeDrivesOf(const PoseGraph& pose_graph,
+                                                    const Truth& truth) {
+  std::map<int, std::vector<DrivenPose>> drives;
   for (const auto& [id, node] : pose_graph.nodes) {
     const auto T_world_tracking = truth.T_world_tracking.find(id);
     if (T_world_tracking == truth.T_world_tracking.end()) continue;
-    std::vector<DrivenNode>& drive = drives[id.trajectory];
     const Rigid2& T_local_node = node.T_local_node.value_or(node.T_map_node);
-    DrivenNode driven{Project2D(Embed3D(T_local_node) *
-                                Rigid3::Rotation(node.gravity_alignment)),
-                      T_world_tracking->second, 0.};
-    if (!drive.empty()) {
-      driven.distance =
-          drive.back().distance + (driven.T_world_tracking.translation() -
-                                   drive.back().T_world_tracking.translation())
-                                      .norm();
-    }
-    drive.push_back(driven);
+    AddToDrive(Project2D(Embed3D(T_local_node) *
+                         Rigid3::Rotation(node.gravity_alignment)),
+               T_world_tracking->second, &drives[id.trajectory]);
   }
   return drives;
 }
 
-void CompareDrive(const std::vector<DrivenNode>& drive,
+// The submaps of each trajectory that have a true pose, and nodes that say
+// where local SLAM put them.
+std::map<int, std::vector<DrivenPose>> SubmapDrivesOf(
+    const PoseGraph& pose_graph, const Truth& truth) {
+  std::map<SubmapId, Rigid2> T_local_submap;
+  for (const Constraint& constraint : pose_graph.constraints) {
+    if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;
+    const std::optional<Rigid2>& T_local_node =
+        pose_graph.nodes.at(constraint.node).T_local_node;
+    if (!T_local_node) continue;
+    T_local_submap.emplace(constraint.submap,
+                           *T_local_node * constraint.T_submap_node.Inverse());
+  }
+  std::map<int, std::vector<DrivenPose>> drives;
+  for (const auto& [id, T_local] : T_local_submap) {
+    const auto T_world_submap = truth.T_world_submap.find(id);
+    if (T_world_submap == truth.T_world_submap.end()) continue;
+    AddToDrive(T_local, T_world_submap->second, &drives[id.trajectory]);
+  }
+  return drives;
+}
+
+void CompareDrive(const std::vector<DrivenPose>& drive,
                   DriveComparison* const comparison) {
   constexpr double kLength = 10.;    // [m] of a stretch
   constexpr double kMaxDrift = 1.5;  // [m] along it
@@ -126,9 +152,9 @@ void CompareDrive(const std::vector<DrivenNode>& drive,
     if (end == drive.size()) return;
     next_begin = drive[begin].distance + kLength / 10.;
     const Rigid2 by_slam =
-        drive[begin].T_local_tracking.Inverse() * drive[end].T_local_tracking;
+        drive[begin].T_local_pose.Inverse() * drive[end].T_local_pose;
     const Rigid2 in_truth =
-        drive[begin].T_world_tracking.Inverse() * drive[end].T_world_tracking;
+        drive[begin].T_world_pose.Inverse() * drive[end].T_world_pose;
     ++comparison->num_stretches;
     comparison->num_different +=
         (by_slam.translation() - in_truth.translation()).norm() > kMaxDrift;
@@ -198,7 +224,10 @@ std::optional<TrajectoryError> EvaluateTrajectory(const PoseGraph& pose_graph,
 
 DriveComparison CompareDrives(const PoseGraph& pose_graph, const Truth& truth) {
   DriveComparison comparison;
-  for (const auto& [trajectory, drive] : DrivesOf(pose_graph, truth)) {
+  const bool has_nodes = !truth.T_world_tracking.empty();
+  for (const auto& [trajectory, drive] :
+       has_nodes ? NodeDrivesOf(pose_graph, truth)
+                 : SubmapDrivesOf(pose_graph, truth)) {
     CompareDrive(drive, &comparison);
   }
   return comparison;

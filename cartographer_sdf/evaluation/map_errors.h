@@ -63,7 +63,8 @@ struct TrajectoryError {
 [[nodiscard]] std::optional<TrajectoryError> EvaluateTrajectory(
     const PoseGraph& pose_graph, const Truth& truth);
 
-// How a drive by local SLAM compares with the true one, stretch by stretch.
+// How a drive by local SLAM compares with the true one, stretch by stretch: by
+// its nodes, or by its submaps if the truth has no nodes.
 struct DriveComparison {
   int num_stretches = 0;
   // Whose ends lie elsewhere, by more than local SLAM drifts within one.

@@ -339,6 +339,10 @@ absl::Status MeasureByFlags(const EvaluatedMap& map, const Truth& truth,
   if (status.ok() && WantsRandomPairs()) {
     status = MeasureRandomPairs(truth, progress, measurements, curves);
   }
+  if (status.ok() && measurements->empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        FLAGS_truth, " has no nodes to measure; submaps need --matches"));
+  }
   return status;
 }
 

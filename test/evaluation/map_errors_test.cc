@@ -155,6 +155,35 @@ TEST(CheckIsTruthOfTest, KnowsADriveByItsShape) {
   EXPECT_EQ(CompareDrives(graph, Circle(8.)).num_stretches, 60);
 }
 
+// Submaps every 2 m, each with its first node; the truth has submaps only.
+TEST(CheckIsTruthOfTest, KnowsADriveByItsSubmaps) {
+  constexpr int kNodesPerSubmap = 4;
+  PoseGraph graph = MapOf(Circle(8.), Rigid2(3., 4., 1.));
+  const Rigid2 T_submap_node(0.5, -0.2, 0.3);
+  for (auto& [id, node] : graph.nodes) {
+    node.T_local_node = node.T_map_node;
+    if (id.index % kNodesPerSubmap != 0) continue;
+    const SubmapId submap{0, id.index / kNodesPerSubmap};
+    graph.submap_poses[submap] = Rigid2();
+    graph.constraints.push_back(
+        {submap, id, T_submap_node, 1., 1., Constraint::Tag::kIntraSubmap});
+  }
+  const auto submaps_of = [&](const Truth& nodes) {
+    Truth truth;
+    for (const auto& [id, pose] : nodes.T_world_tracking) {
+      if (id.index % kNodesPerSubmap != 0) continue;
+      truth.T_world_submap[{0, id.index / kNodesPerSubmap}] =
+          pose * T_submap_node.Inverse();
+    }
+    return truth;
+  };
+  EXPECT_GT(CompareDrives(graph, submaps_of(Circle(8.))).num_stretches, 20);
+  EXPECT_TRUE(
+      CheckIsTruthOf("map", graph, "truth", submaps_of(Circle(8.))).ok());
+  EXPECT_FALSE(
+      CheckIsTruthOf("map", graph, "truth", submaps_of(Circle(5.))).ok());
+}
+
 TEST(CheckIsTruthOfTest, TakesWhatItCannotTell) {
   // Too short, or without nodes.
   EXPECT_TRUE(

@@ -191,6 +191,9 @@ TEST_F(EvaluateTest, TellsWhatIsWrongWithFiles) {
       "one.csv", "kind,trajectory,index,x,y,yaw\nnode,5,0,1,2,3\n");
   ExpectFailure({"--truth", one}, 1, "too few nodes in common");
   ExpectFailure({"--truth", truth_, "--matches", one}, 1, one);
+  const std::string submaps = directory_.Write(
+      "submaps.csv", "kind,trajectory,index,x,y,yaw\nsubmap,5,0,1,2,3\n");
+  ExpectFailure({"--truth", submaps}, 1, "has no nodes to measure");
   ExpectFailure({"--truth", truth_, "--csv", "/nowhere/n.csv"}, 1,
                 "/nowhere/n.csv");
 }
