@@ -10,9 +10,11 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/execution/executor.h"
+#include "cartographer_sdf/pbstream/map_file.h"
 #include "pybind11/pybind11.h"
 
 namespace cartographer_sdf {
@@ -36,11 +38,20 @@ T ValueOrThrow(absl::StatusOr<T> value) {
 // 0: as many threads as the machine supports. ValueError for other nonsense.
 Executor ExecutorOf(int threads);
 
+MapSource SourceOf(const std::string& path, bool repair,
+                   bool drop_odometry = false);
+
+// Throws before any work if the output is an input or cannot be written.
+void CheckOutput(const std::vector<std::string>& inputs,
+                 const std::string& output);
+
 void BindGeometry(pybind11::module_* module);
 void BindOptions(pybind11::module_* module);
 void BindMaps(pybind11::module_* module);
 void BindPlaces(pybind11::module_* module);
 void BindTasks(pybind11::module_* module);
+void BindSessions(pybind11::module_* module);
+void BindScans(pybind11::module_* module);
 
 }  // namespace cartographer_sdf
 

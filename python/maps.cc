@@ -57,7 +57,7 @@ LoadedMap ReadLoadedMap(const std::string& path, const bool repair) {
   LoadedMap map;
   map.path = path;
   map.state = ValueOrThrow(ReadMap(
-      {path, repair ? MissingRecords::kDrop : MissingRecords::kRefuse},
+      SourceOf(path, repair),
       {[&map](const SubmapId& id, const SubmapSummary&, OccupancyGrid grid) {
          map.grids.emplace(id, std::move(grid));
        },

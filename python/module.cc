@@ -8,8 +8,10 @@
 
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
+#include "cartographer_sdf/file/pending_file.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
+#include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "pybind11/eigen.h"
 #include "pybind11/operators.h"
 #include "pybind11/stl.h"
@@ -53,6 +55,20 @@ Executor ExecutorOf(const int threads) {
   if (threads > 0) return MakeExecutor(threads);
   return MakeExecutor(std::clamp(
       static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxThreads));
+}
+
+MapSource SourceOf(const std::string& path, const bool repair,
+                   const bool drop_odometry) {
+  return {path, repair ? MissingRecords::kDrop : MissingRecords::kRefuse,
+          drop_odometry ? OdometryRecords::kDrop : OdometryRecords::kKeep};
+}
+
+void CheckOutput(const std::vector<std::string>& inputs,
+                 const std::string& output) {
+  for (const std::string& input : inputs) {
+    ThrowUnlessOk(CheckIsNoInput(input, output));
+  }
+  ThrowUnlessOk(PendingFile::Create(output).status());
 }
 
 void BindGeometry(py::module_* const module) {
@@ -137,4 +153,6 @@ PYBIND11_MODULE(_core, module) {
   sdf::BindMaps(&module);
   sdf::BindPlaces(&module);
   sdf::BindTasks(&module);
+  sdf::BindSessions(&module);
+  sdf::BindScans(&module);
 }

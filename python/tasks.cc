@@ -28,10 +28,6 @@ namespace py = pybind11;
 
 namespace {
 
-MapSource SourceOf(const std::string& path, const bool repair) {
-  return {path, repair ? MissingRecords::kDrop : MissingRecords::kRefuse};
-}
-
 std::shared_ptr<DescribedMap> Describe(const std::string& path,
                                        const Options& options,
                                        const int threads, const bool repair) {
@@ -58,11 +54,13 @@ LoopClosingResult CloseLoopsOf(const std::string& path,
                                const std::optional<std::string>& output,
                                const Options& options,
                                const std::set<int>& frozen_trajectories,
-                               const int threads, const bool repair) {
+                               const int threads, const bool repair,
+                               const bool drop_odometry) {
   if (options.loop_closing.recognition.match.method != Method::kSdf) {
     throw py::value_error("close_loops needs match.method = \"sdf\"");
   }
-  const MapSource source = SourceOf(path, repair);
+  if (output) CheckOutput({path}, *output);
+  const MapSource source = SourceOf(path, repair, drop_odometry);
   LoopClosingResult result = ValueOrThrow(CloseLoops(
       options.loop_closing, source, frozen_trajectories, ExecutorOf(threads)));
   if (output)
@@ -195,6 +193,7 @@ void BindClosedMap(py::module_* const module) {
               py::arg("output") = py::none(), py::arg("options") = Options(),
               py::arg("frozen_trajectories") = std::set<int>(),
               py::arg("threads") = 0, py::arg("repair") = false,
+              py::arg("drop_odometry") = false,
               py::call_guard<py::gil_scoped_release>());
 }
 

@@ -13,15 +13,20 @@ import pathlib
 import tempfile
 
 from ._core import (
-    Candidate, ClosedMap, Closure, Constraint, DescribedMap, Error, Field, Grid, Index, Map, Match,
-    Options, Place, Pose, SubmapId, close_loops, describe, describe_map, distance_field, match,
-    node_errors, read_map, recognize, score_matches, __commit__, __version__, _load_options)
+    Audit, AuditedConstraint, Candidate, ClosedMap, Closure, Constraint, DescribedMap, Error, Field,
+    Grid, Index, Localization, Map, Match, MergedMap, MergedSession, Options, PanoramaMap, Place,
+    Placement, Pose, Scan, ScanCandidate, ScanLocalization, SessionLink, SubmapId, audit,
+    close_loops, describe, describe_map, distance_field, localize_scans, match, merge, node_errors,
+    read_map, read_scans, recognize, relocalize, score_matches, __commit__, __version__,
+    _load_options)
 
 __all__ = [
-    "Candidate", "ClosedMap", "Closure", "Constraint", "DescribedMap", "Error", "Field", "Grid",
-    "Index", "Map", "Match", "Options", "Place", "Pose", "SubmapId", "close_loops", "describe",
-    "describe_map", "distance_field", "load_options", "match", "node_errors", "read_map",
-    "recognize", "score_matches"]
+    "Audit", "AuditedConstraint", "Candidate", "ClosedMap", "Closure", "Constraint", "DescribedMap",
+    "Error", "Field", "Grid", "Index", "Localization", "Map", "Match", "MergedMap", "MergedSession",
+    "Options", "PanoramaMap", "Place", "Placement", "Pose", "Scan", "ScanCandidate",
+    "ScanLocalization", "SessionLink", "SubmapId", "audit", "close_loops", "describe",
+    "describe_map", "distance_field", "load_options", "localize_scans", "match", "merge",
+    "node_errors", "read_map", "read_scans", "recognize", "relocalize", "score_matches"]
 
 
 def _lua(value):

@@ -266,8 +266,241 @@ class ClosedMap:
 
 def close_loops(path: str, output: Optional[str] = None, options: Options = ...,
                 frozen_trajectories: Set[int] = ..., threads: int = 0,
-                repair: bool = False) -> ClosedMap:
-    """As the subcommand close_loops; writes the map to `output`, if given."""
+                repair: bool = False, drop_odometry: bool = False) -> ClosedMap:
+    """As the subcommand close_loops; writes the map to `output`, if given.
+    `drop_odometry` reads and writes it as if it had no odometry, which
+    Cartographer weighs anew when it loads a map unfrozen."""
+
+class AuditedConstraint:
+    """An inter-submap constraint of the map, and what is thought of it."""
+
+    @property
+    def index(self) -> int:
+        """In Map.constraints."""
+    @property
+    def verdict(self) -> str:
+        """"confirmed", "agrees_with_map", "unchecked"; doubtful: "contradicted", "ambiguous",
+        "unlikely", "outvoted", "unsupported", "contradicted_by_map"."""
+    @property
+    def is_doubtful(self) -> bool: ...
+    @property
+    def error_before(self) -> Tuple[float, float]:
+        """In the map as it was [m, rad]."""
+    @property
+    def error_after(self) -> Tuple[float, float]:
+        """In the map without doubtful constraints [m, rad]."""
+
+class Audit:
+    @property
+    def constraints(self) -> List[AuditedConstraint]:
+        """All inter-submap constraints, in their order."""
+    @property
+    def doubtful(self) -> int:
+        """How many are."""
+    @property
+    def submaps(self) -> Dict[SubmapId, Pose]:
+        """T_map_submap without the doubtful constraints, optimised."""
+    @property
+    def stage_seconds(self) -> List[Tuple[str, float]]: ...
+
+def audit(path: str, output: Optional[str] = None, options: Options = ...,
+          frozen_trajectories: Set[int] = ..., threads: int = 0, repair: bool = False,
+          drop_odometry: bool = False) -> Audit:
+    """As the subcommand audit; writes the map without the doubtful constraints
+    to `output`, if given."""
+
+# --- Several maps. ---
+
+class Placement:
+    """Votes that agree on where the query lies."""
+
+    @property
+    def T_map_query(self) -> Pose: ...
+    @property
+    def score(self) -> float:
+        """Log-odds of being right."""
+    @property
+    def is_rival(self) -> bool:
+        """Whether it and the best one exclude each other."""
+    @property
+    def votes(self) -> List[int]:
+        """Indices in Localization.matches."""
+
+class Localization:
+    """A certain pose, or a refusal."""
+
+    @property
+    def localized(self) -> bool: ...
+    @property
+    def verdict(self) -> str:
+        """"localized", or why not: "too_little_seen", "nothing_alike", "uncertain",
+        "ambiguous", "contradicted"."""
+    @property
+    def reason(self) -> str:
+        """A sentence."""
+    @property
+    def T_map_query(self) -> Optional[Pose]:
+        """The query's map frame in the map frame; None unless localized."""
+    @property
+    def score(self) -> Optional[float]:
+        """Log-odds of the best placement."""
+    @property
+    def runner_up_score(self) -> Optional[float]:
+        """Of the best one that it excludes."""
+    @property
+    def matches(self) -> List[Match]:
+        """Those that vote; references in the map."""
+    @property
+    def placements(self) -> List[Placement]:
+        """Best first, whether localized or not."""
+    @property
+    def agreeing(self) -> int: ...
+    @property
+    def contradicting(self) -> int: ...
+    @property
+    def stage_seconds(self) -> List[Tuple[str, float]]: ...
+
+def relocalize(map: Union[str, DescribedMap], query: str, output: Optional[str] = None,
+               first_seconds: Optional[float] = None, start_seconds: float = 0.0,
+               options: Options = ..., threads: int = 0, repair: bool = False,
+               drop_odometry: bool = False) -> Localization:
+    """As the subcommand relocalize: where the query, or that window of each of
+    its trajectories [s], lies in the map. To localise many queries in one map,
+    describe it once.
+
+    Writes both as one map to `output`, if given, for which both must be paths
+    and the query whole; raises Error where that is refused, for example if the
+    query is not localized."""
+
+class MergedSession:
+    @property
+    def path(self) -> str: ...
+    @property
+    def group(self) -> int:
+        """Sessions of one group are connected."""
+    @property
+    def T_merged_session(self) -> Optional[Pose]:
+        """Before the optimisation; None if it is not in the merged map."""
+    @property
+    def left_out(self) -> str:
+        """Why it is not in the merged map; empty if it is."""
+
+class SessionLink:
+    @property
+    def first(self) -> int:
+        """Indices in MergedMap.sessions; first < second."""
+    @property
+    def second(self) -> int: ...
+    @property
+    def localization(self) -> Localization:
+        """Of the second in the first."""
+
+class MergedMap:
+    @property
+    def merged(self) -> bool:
+        """Whether there is a merged map. If not, the rest holds what was found."""
+    @property
+    def reason(self) -> str:
+        """Why there is none."""
+    @property
+    def sessions(self) -> List[MergedSession]:
+        """In the order of the paths."""
+    @property
+    def links(self) -> List[SessionLink]:
+        """Of all pairs of sessions."""
+    @property
+    def closures(self) -> List[Closure]:
+        """Within and between sessions; ids are those of the merged map."""
+    @property
+    def submaps(self) -> Dict[SubmapId, Pose]:
+        """T_merged_submap after the optimisation."""
+    @property
+    def overlapping_pairs(self) -> int: ...
+    @property
+    def contradictions(self) -> List[Match]:
+        """Overlapping pairs that contradict each other."""
+    @property
+    def stage_seconds(self) -> List[Tuple[str, float]]: ...
+
+def merge(paths: List[str], output: Optional[str] = None, options: Options = ...,
+          frozen_trajectories: Set[int] = ..., threads: int = 0, repair: bool = False,
+          drop_odometry: bool = False) -> MergedMap:
+    """As the subcommand merge; writes the map to `output`, if given and if
+    `merged`: a refusal is an answer."""
+
+# --- A robot that stands still. ---
+
+class Scan:
+    """One scan of a planar sensor of a robot."""
+
+    def __init__(self, returns: ArrayLike, misses: ArrayLike = ...,
+                 T_robot_sensor: Pose = ...) -> None:
+        """`returns`: N x 2 points hit, in the sensor frame [m]; `misses`: end points
+        of beams without an echo, at the range of the sensor."""
+    @property
+    def returns(self) -> NDArray[np.float32]: ...
+    @property
+    def misses(self) -> NDArray[np.float32]: ...
+    @property
+    def T_robot_sensor(self) -> Pose: ...
+
+def read_scans(path: str) -> List[Scan]:
+    """Of a JSON or CSV file, as relocalize --scan takes it."""
+
+class PanoramaMap:
+    """What localising scans needs of a map, computed once."""
+
+    def __init__(self, map: Union[str, Grid], options: Options = ...,
+                 repair: bool = False) -> None:
+        """Of a .pbstream, of a map of ROS (.yaml, .pgm, .png), or of a grid, whose
+        submap frame is then the map frame. Raises Error if it has no wall, or no
+        free space for a robot."""
+
+class ScanCandidate:
+    @property
+    def T_map_robot(self) -> Pose: ...
+    @property
+    def probability(self) -> float: ...
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """3 x 3, of x, y [m^2] and the heading [rad^2], in the map frame."""
+    @property
+    def beams(self) -> int:
+        """That were compared; what becomes of them, as fractions:"""
+    @property
+    def fit(self) -> float:
+        """Mean: 1 for an echo on a wall, .6 at 7 cm, 0 for all others."""
+    @property
+    def at_wall(self) -> float: ...
+    @property
+    def through_wall(self) -> float: ...
+    @property
+    def in_free_space(self) -> float: ...
+    @property
+    def in_unknown(self) -> float: ...
+
+class ScanLocalization:
+    @property
+    def localized(self) -> bool: ...
+    @property
+    def verdict(self) -> str:
+        """As of Localization."""
+    @property
+    def reason(self) -> str: ...
+    @property
+    def T_map_robot(self) -> Optional[Pose]:
+        """None unless localized."""
+    @property
+    def candidates(self) -> List[ScanCandidate]:
+        """All poses that explain the scans, the most probable first."""
+    @property
+    def elsewhere_probability(self) -> Optional[float]:
+        """That none of them is right; None where too little was seen to search."""
+    @property
+    def stage_seconds(self) -> List[Tuple[str, float]]: ...
+
+def localize_scans(map: PanoramaMap, scans: List[Scan], options: Options = ...) -> ScanLocalization:
+    """Of scans from one place, as relocalize --scan."""
 
 # --- Against the truth. ---
 

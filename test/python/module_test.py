@@ -12,6 +12,7 @@ The module is found by PYTHONPATH; PROGRAM simulates the maps.
 import ast
 import importlib.util
 import inspect
+import json
 import math
 import os
 import pathlib
@@ -48,7 +49,6 @@ class MapTest(unittest.TestCase):
     def test_reads_what_info_counts(self):
         info = subprocess.run([PROGRAM, "info", self.file("a.pbstream"), "--result", "-"],
                               capture_output=True, check=True)
-        import json
         counts = json.loads(info.stdout)["counts"]
         self.assertEqual(len(self.map.submaps), counts["submaps"])
         self.assertEqual(len(self.map.node_ids), counts["nodes"])
@@ -171,6 +171,195 @@ class MapTest(unittest.TestCase):
         self.assertGreater(score["accepted_right"], 0)
         with self.assertRaises(ValueError):
             sdf.score_matches(both, self.map, self.file("a.csv"), self.map)
+
+    def result_of_program(self, *arguments):
+        """The JSON of --result, whatever the exit code."""
+        done = subprocess.run([PROGRAM, *arguments, "--result", self.file("result.json")],
+                              check=False, capture_output=True)
+        self.assertIn(done.returncode, (0, 3), done.stderr)
+        return json.loads(pathlib.Path(self.file("result.json")).read_text())
+
+    def assert_is_pose(self, pose, members):
+        self.assertEqual(tuple(pose), (members["x"], members["y"], members["yaw"]))
+
+    def test_relocalizes_as_the_program_does(self):
+        a, b = self.file("a.pbstream"), self.file("b.pbstream")
+        found = sdf.relocalize(a, b, threads=2)
+        by_program = self.result_of_program("relocalize", a, b)
+        self.assertTrue(found.localized)
+        self.assertEqual((found.verdict, found.reason), ("localized", by_program["reason"]))
+        self.assert_is_pose(found.T_map_query, by_program["T_map_query"])
+        self.assertEqual(found.agreeing, by_program["agreeing"])
+        self.assertEqual(len(found.placements[0].votes), len(by_program["closures"]))
+        self.assertTrue(all(0 <= v < len(found.matches) for v in found.placements[0].votes))
+        described = sdf.describe_map(a)
+        window = sdf.relocalize(described, b, first_seconds=20, start_seconds=30)
+        by_program = self.result_of_program("relocalize", a, b, "--first_seconds", "20",
+                                            "--start_seconds", "30")
+        self.assertEqual(window.reason, by_program["reason"])
+        if window.localized:
+            self.assert_is_pose(window.T_map_query, by_program["T_map_query"])
+        # Both as one map.
+        sdf.relocalize(a, b, self.file("both.pbstream"))
+        self.result_of_program("relocalize", a, b, "--output", self.file("both_by_program.pbstream"))
+        self.assertEqual(pathlib.Path(self.file("both.pbstream")).read_bytes(),
+                         pathlib.Path(self.file("both_by_program.pbstream")).read_bytes())
+        for arguments in ({"first_seconds": 0.0}, {"first_seconds": math.nan},
+                          {"start_seconds": -1.0}, {"output": a, "first_seconds": 10.0}):
+            with self.assertRaises(ValueError):
+                sdf.relocalize(a, b, **arguments)
+        with self.assertRaises(ValueError):
+            sdf.relocalize(described, b, self.file("none.pbstream"))
+
+    def test_a_map_too_small_to_be_localized_is_no_error(self):
+        small = self.file("small.pbstream")
+        subprocess.run([PROGRAM, "simulate", "--output", small, "--truth", self.file("small.csv"),
+                        "--length", "1", "--plan_width", "30", "--plan_height", "26"],
+                       check=True, capture_output=True)
+        refused = sdf.relocalize(small, self.file("a.pbstream"),
+                                 options=sdf.load_options({"localization.placement.min_score": 1000}))
+        self.assertFalse(refused.localized)
+        self.assertIsNone(refused.T_map_query)
+        self.assertNotEqual(refused.verdict, "localized")
+        self.assertNotEqual(refused.reason, "")
+        output = self.file("not_written.pbstream")
+        with self.assertRaisesRegex(sdf.Error, "nothing is written"):
+            sdf.relocalize(small, self.file("a.pbstream"), output,
+                           options=sdf.load_options({"localization.placement.min_score": 1000}))
+        merged = sdf.merge([small, self.file("a.pbstream")], output,
+                           sdf.load_options({"localization.placement.min_score": 1000}))
+        self.assertFalse(merged.merged)
+        self.assertNotEqual(merged.reason, "")
+        self.assertFalse(pathlib.Path(output).exists())
+
+    def test_merges_as_the_program_does(self):
+        a, b = self.file("a.pbstream"), self.file("b.pbstream")
+        output, other = self.file("merged.pbstream"), self.file("merged_by_program.pbstream")
+        merged = sdf.merge([a, b], output, threads=2)
+        by_program = self.result_of_program("merge", a, b, "-o", other)
+        self.assertTrue(merged.merged)
+        self.assertEqual([s.path for s in merged.sessions], [a, b])
+        self.assertEqual([s.left_out for s in merged.sessions], ["", ""])
+        for session, members in zip(merged.sessions, by_program["sessions"]):
+            self.assert_is_pose(session.T_merged_session, members["T_merged_session"])
+        link = merged.links[0]
+        self.assertEqual((link.first, link.second), (0, 1))
+        self.assertTrue(link.localization.localized)
+        self.assertEqual(merged.overlapping_pairs, by_program["overlapping_pairs"])
+        self.assertEqual(len(merged.contradictions), by_program["contradicting_pairs"])
+        self.assertEqual(pathlib.Path(other).read_bytes(), pathlib.Path(output).read_bytes())
+        written = sdf.read_map(output)
+        self.assertEqual(written.trajectories, [0, 1])
+        self.assertEqual(set(written.submaps), set(merged.submaps))
+        with self.assertRaises(ValueError):
+            sdf.merge([a])
+
+    def test_audits_as_the_program_does(self):
+        path, falsified = self.file("to_audit.pbstream"), self.file("falsified.pbstream")
+        sdf.close_loops(self.file("a.pbstream"), path)
+        subprocess.run([PROGRAM, "falsify", path, "-o", falsified, "--wrong_constraints",
+                        self.file("wrong.csv")],
+                       check=True, capture_output=True)
+        output, other = self.file("mended.pbstream"), self.file("mended_by_program.pbstream")
+        audit = sdf.audit(falsified, output)
+        by_program = self.result_of_program("audit", falsified, "-o", other)
+        self.assertEqual(audit.doubtful, by_program["counts"]["doubtful"])
+        self.assertEqual(audit.doubtful, sum(c.is_doubtful for c in audit.constraints))
+        counts = {}
+        for constraint in audit.constraints:
+            counts[constraint.verdict] = counts.get(constraint.verdict, 0) + 1
+        self.assertEqual(counts, by_program["verdicts"])
+        constraints = sdf.read_map(falsified).constraints
+        self.assertTrue(all(constraints[c.index].is_inter_submap for c in audit.constraints))
+        doubtful = [c for c in audit.constraints if c.is_doubtful]
+        self.assertGreater(len(doubtful), 0)
+        self.assertGreater(max(c.error_after[0] for c in doubtful), 0)
+        self.assertEqual(pathlib.Path(other).read_bytes(), pathlib.Path(output).read_bytes())
+
+    def scan_in(self, filestem, x, y):
+        """End points of 360 beams from (x, y) in the map of filestem.yaml."""
+        with open(filestem + ".pgm", "rb") as file:
+            self.assertEqual(file.readline(), b"P5\n")
+            line = file.readline()
+            while line.startswith(b"#"):
+                line = file.readline()
+            width, height = map(int, line.split())
+            file.readline()
+            pixels = np.frombuffer(file.read(), np.uint8).reshape(height, width)
+        members = dict(line.split(":", 1) for line in
+                       pathlib.Path(filestem + ".yaml").read_text().splitlines())
+        resolution = float(members["resolution"])
+        origin = json.loads(members["origin"])
+        points = []
+        for angle in np.linspace(0, 2 * math.pi, 360, endpoint=False):
+            for r in np.arange(0.1, 20, resolution / 4):
+                p = (x + r * math.cos(angle), y + r * math.sin(angle))
+                column = int((p[0] - origin[0]) / resolution)
+                row = height - 1 - int((p[1] - origin[1]) / resolution)
+                if not (0 <= column < width and 0 <= row < height):
+                    break
+                if pixels[row, column] == 0:
+                    points.append((p[0] - x, p[1] - y))
+                    break
+        return np.array(points)
+
+    def test_localizes_scans_as_the_program_does(self):
+        path, filestem = self.file("scans.pbstream"), self.file("scans")
+        sdf.close_loops(self.file("a.pbstream"), path)
+        subprocess.run([PROGRAM, "export", path, "--map_filestem", filestem], check=True,
+                       capture_output=True)
+        x, y, _ = sdf.read_map(path).node_poses[40]
+        points = self.scan_in(filestem, x, y)
+        scan_file = self.file("scan.json")
+        pathlib.Path(scan_file).write_text(json.dumps({"points": points.tolist()}))
+        by_program = self.result_of_program("relocalize", filestem + ".yaml", "--scan",
+                                            scan_file)["scans"][0]
+        panoramas = sdf.PanoramaMap(filestem + ".yaml")
+        found = sdf.localize_scans(panoramas, sdf.read_scans(scan_file))
+        self.assertEqual(found.reason, by_program["reason"])
+        self.assertEqual(found.localized, by_program["localized"])
+        self.assertEqual(len(found.candidates), len(by_program["candidates"]))
+        for candidate, members in zip(found.candidates, by_program["candidates"]):
+            self.assert_is_pose(candidate.T_map_robot, members["T_map_robot"])
+            self.assertEqual(candidate.probability, members["probability"])
+            np.testing.assert_array_equal(candidate.covariance, members["covariance"])
+            self.assertEqual((candidate.beams, candidate.fit, candidate.at_wall),
+                             (members["beams"], members["fit"], members["at_wall"]))
+        self.assertAlmostEqual(found.elsewhere_probability +
+                               sum(c.probability for c in found.candidates), 1)
+        best = found.candidates[0].T_map_robot
+        self.assertLess(math.hypot(best.x - x, best.y - y), 0.2)
+        self.assertLess(abs(best.yaw), 0.05)
+        # The same, turned by the pose of the sensor; and in the map of Cartographer.
+        turned = sdf.Pose(0, 0, 1.0)
+        scan = sdf.Scan(turned.inverse().apply(points), T_robot_sensor=turned)
+        self.assertEqual(scan.returns.shape, (len(points), 2))
+        best = sdf.localize_scans(sdf.PanoramaMap(path), [scan]).candidates[0].T_map_robot
+        self.assertLess(math.hypot(best.x - x, best.y - y), 0.2)
+        self.assertLess(abs(best.yaw), 0.05)
+        # Too little of it.
+        refused = sdf.localize_scans(panoramas, [sdf.Scan(points[:5])])
+        self.assertEqual(refused.verdict, "too_little_seen")
+        self.assertIsNone(refused.T_map_robot)
+        self.assertIsNone(refused.elsewhere_probability)
+        with self.assertRaises(ValueError):
+            sdf.localize_scans(panoramas, [])
+        with self.assertRaises(ValueError):
+            sdf.Scan([[math.inf, 0]])
+        with self.assertRaises(sdf.Error):
+            sdf.PanoramaMap(sdf.Grid(np.full((9, 9), 0.1), np.ones((9, 9), bool), 0.1))
+
+    def test_an_output_is_checked_before_the_work(self):
+        a = self.file("a.pbstream")
+        before = pathlib.Path(a).read_bytes()
+        for function in (lambda output: sdf.close_loops(a, output),
+                         lambda output: sdf.audit(a, output),
+                         lambda output: sdf.merge([a, self.file("b.pbstream")], output),
+                         lambda output: sdf.relocalize(self.file("b.pbstream"), a, output)):
+            for output in (a, self.file("no_such_folder/map.pbstream")):
+                with self.assertRaisesRegex(sdf.Error, "map.pbstream|a.pbstream"):
+                    function(output)
+        self.assertEqual(pathlib.Path(a).read_bytes(), before)
 
     def test_poses(self):
         a, b = sdf.Pose(1, 2, math.pi / 2), sdf.Pose(3, 0, 0.5)
