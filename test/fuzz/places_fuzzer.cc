@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The records of a places file, behind their compression.
+// The records of a places file, behind their compression, and what an index
+// makes of them.
 
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/place_store/place_file.h"
 #include "glog/logging.h"
 #include "test/fuzz/fuzz_target.h"
@@ -37,5 +40,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* const data,
   const absl::StatusOr<Place> again = DecodePlace(encoded);
   CHECK(again.ok()) << again.status();
   CHECK(EncodePlace(*again) == encoded);
+  PlaceIndex index((RetrievalOptions()));
+  index.Add(place->id, place->features);
+  const auto none = [](const SubmapId&) { return false; };
+  for (const RetrievalCandidate& candidate :
+       index.Query(again->features, none)) {
+    CHECK(std::isfinite(candidate.score));
+    for (const Rigid2& pose : candidate.T_reference_query) {
+      CHECK(pose.translation().allFinite());
+    }
+  }
+  CHECK(index.Remove(place->id));
   return 0;
 }
