@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+# SPDX-License-Identifier: Apache-2.0
+"""Draws memory and latencies of a long day of the live searcher.
+
+usage: measure_day.py PROGRAM PICTURE.png [--submaps N] [--seed N] [--csv FILE]
+
+PROGRAM is measure_day of test/benchmark. With --csv, its table is kept there,
+or taken from there if the file exists. Needs matplotlib.
+"""
+
+import argparse
+import csv
+import io
+import pathlib
+import subprocess
+import sys
+
+
+def table_of(arguments):
+    if arguments.csv and arguments.csv.exists():
+        return arguments.csv.read_text()
+    done = subprocess.run([arguments.program, str(arguments.submaps), str(arguments.seed)],
+                          stdout=subprocess.PIPE, text=True, check=True)
+    if arguments.csv:
+        arguments.csv.write_text(done.stdout)
+    return done.stdout
+
+
+def median(values):
+    return sorted(values)[len(values) // 2]
+
+
+def print_summary(rows):
+    """The first and the last tenth; what grows differs."""
+    tenth = max(1, len(rows) // 10)
+    print("column,first_tenth,last_tenth")
+    for column in ("places", "resident_mb", "scan_mean_ms", "scan_max_ms", "callback_mean_us",
+                   "worker_ms_per_submap"):
+        values = [row[column] for row in rows]
+        print(f"{column},{median(values[:tenth]):.4g},{median(values[-tenth:]):.4g}")
+    for column in ("submaps", "trajectories", "closures", "localized", "kidnaps", "deletions",
+                   "saves"):
+        print(f"{column},,{rows[-1][column]:.0f}")
+
+
+def draw(rows, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+    figure, axes = pyplot.subplots(3, 1, sharex=True, figsize=(8, 7))
+    submaps = [row["submaps"] for row in rows]
+    for axis, columns, label in (
+            (axes[0], ["resident_mb"], "resident memory [MB]"),
+            (axes[1], ["scan_mean_ms", "scan_max_ms"], "time for a scan [ms]"),
+            (axes[2], ["worker_ms_per_submap"], "worker, CPU for a submap [ms]")):
+        for column in columns:
+            axis.plot(submaps, [row[column] for row in rows], linewidth=1, label=column)
+        axis.set_ylabel(label)
+        axis.set_ylim(bottom=0)
+        axis.grid(alpha=0.3)
+        if len(columns) > 1:
+            axis.set_yscale("log")
+            axis.set_ylim(bottom=None)
+            axis.legend()
+    axes[-1].set_xlabel("submaps since the start")
+    figure.tight_layout()
+    figure.savefig(path, dpi=100)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("program")
+    parser.add_argument("picture", type=pathlib.Path)
+    parser.add_argument("--submaps", type=int, default=10000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--csv", type=pathlib.Path)
+    arguments = parser.parse_args()
+    rows = [{name: float(value) for name, value in row.items()}
+            for row in csv.DictReader(io.StringIO(table_of(arguments)))]
+    print_summary(rows)
+    draw(rows, arguments.picture)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
