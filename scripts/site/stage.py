@@ -21,7 +21,8 @@ import cpp_reference
 import doxygen_headers
 import reference
 
-# The order of the pages. What docs/ has besides is added to its folder's group.
+# The order of the pages. What docs/ has besides is added to the group of its
+# folder, or to the guides.
 NAVIGATION = (
     ("Start", ("install",)),
     ("Tutorials", ("tutorials/folded_map", "tutorials/two_sessions", "tutorials/start_up", "tutorials/fleet")),
@@ -204,11 +205,27 @@ def toctree(pages, caption=None):
     return "\n".join(["", "```{toctree}", *options, "", *pages, "```", ""])
 
 
+GROUPS = {"tutorials": "Tutorials", "howto": "How to", "": "Guides"}
+
+
+def navigation(documents):
+    """(caption, pages) with all of `documents`, paths in docs/ without suffix."""
+    groups = {caption: list(pages) for caption, pages in NAVIGATION}
+    listed = {page for pages in groups.values() for page in pages} | {"index"}
+    for page in sorted(documents):
+        folder = page.rpartition("/")[0]
+        if page not in listed and folder in GROUPS:
+            groups[GROUPS[folder]].append(page)
+    return list(groups.items())
+
+
 def stage_navigation(site):
     """The tree of pages, at the end of the first page of each group."""
     run_log = site.output / "reference/subcommands/cartographer_sdf_run_log.md"
     index = (site.output / "index.md").read_text(encoding="utf-8")
-    for caption, pages in NAVIGATION:
+    docs = site.source / "docs"
+    documents = [path.relative_to(docs).with_suffix("").as_posix() for path in docs.rglob("*.md")]
+    for caption, pages in navigation(documents):
         index += toctree(pages, caption)
     site.write("index.md", index)
     for first, folder in (("design.md", "design"), ("results/README.md", "results")):
