@@ -153,7 +153,9 @@ Audit AuditOf(const std::string& path, const std::optional<std::string>& output,
   Audit audit =
       ValueOrThrow(AuditMap(options.loop_closing, options.audit, source,
                             frozen_trajectories, ExecutorOf(threads)));
-  if (output) ThrowUnlessOk(WriteMap(source, *output, audit.pose_graph));
+  if (output && audit.refusal.empty()) {
+    ThrowUnlessOk(WriteMap(source, *output, audit.pose_graph));
+  }
   return audit;
 }
 
@@ -251,6 +253,8 @@ void BindAudit(py::module_* const module) {
   py::class_<Audit>(*module, "Audit")
       .def_readonly("constraints", &Audit::constraints)
       .def_readonly("doubtful", &Audit::num_doubtful)
+      .def_readonly("refusal", &Audit::refusal)
+      .def_readonly("leaves_out_odometry", &Audit::leaves_out_odometry)
       .def_property_readonly(
           "submaps",
           [](const Audit& audit) { return audit.pose_graph.submap_poses; })

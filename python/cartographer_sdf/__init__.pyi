@@ -298,6 +298,12 @@ class Audit:
     def doubtful(self) -> int:
         """How many are."""
     @property
+    def refusal(self) -> str:
+        """Why the map without them must not replace this one; empty otherwise."""
+    @property
+    def leaves_out_odometry(self) -> bool:
+        """Whether odometry contradicts what is kept, and was not optimised with."""
+    @property
     def submaps(self) -> Dict[SubmapId, Pose]:
         """T_map_submap without the doubtful constraints, optimised."""
     @property
@@ -307,7 +313,7 @@ def audit(path: str, output: Optional[str] = None, options: Options = ...,
           frozen_trajectories: Set[int] = ..., threads: int = 0, repair: bool = False,
           drop_odometry: bool = False) -> Audit:
     """As the subcommand audit; writes the map without the doubtful constraints
-    to `output`, if given."""
+    to `output`, if given and if there is no `refusal`."""
 
 # --- Several maps. ---
 

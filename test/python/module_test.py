@@ -211,23 +211,17 @@ class MapTest(unittest.TestCase):
         with self.assertRaises(ValueError):
             sdf.relocalize(described, b, self.file("none.pbstream"))
 
-    def test_a_map_too_small_to_be_localized_is_no_error(self):
-        small = self.file("small.pbstream")
-        subprocess.run([PROGRAM, "simulate", "--output", small, "--truth", self.file("small.csv"),
-                        "--length", "1", "--plan_width", "30", "--plan_height", "26"],
-                       check=True, capture_output=True)
-        refused = sdf.relocalize(small, self.file("a.pbstream"),
-                                 options=sdf.load_options({"localization.placement.min_score": 1000}))
+    def test_a_refusal_is_an_answer(self):
+        a, b, output = self.file("a.pbstream"), self.file("b.pbstream"), self.file("no.pbstream")
+        strict = sdf.load_options({"localization.placement.min_score": 1000})
+        refused = sdf.relocalize(a, b, options=strict)
         self.assertFalse(refused.localized)
         self.assertIsNone(refused.T_map_query)
         self.assertNotEqual(refused.verdict, "localized")
         self.assertNotEqual(refused.reason, "")
-        output = self.file("not_written.pbstream")
         with self.assertRaisesRegex(sdf.Error, "nothing is written"):
-            sdf.relocalize(small, self.file("a.pbstream"), output,
-                           options=sdf.load_options({"localization.placement.min_score": 1000}))
-        merged = sdf.merge([small, self.file("a.pbstream")], output,
-                           sdf.load_options({"localization.placement.min_score": 1000}))
+            sdf.relocalize(a, b, output, options=strict)
+        merged = sdf.merge([a, b], output, strict)
         self.assertFalse(merged.merged)
         self.assertNotEqual(merged.reason, "")
         self.assertFalse(pathlib.Path(output).exists())
@@ -273,6 +267,7 @@ class MapTest(unittest.TestCase):
         self.assertTrue(all(constraints[c.index].is_inter_submap for c in audit.constraints))
         doubtful = [c for c in audit.constraints if c.is_doubtful]
         self.assertGreater(len(doubtful), 0)
+        self.assertEqual(audit.refusal, "")
         self.assertGreater(max(c.error_after[0] for c in doubtful), 0)
         self.assertEqual(pathlib.Path(other).read_bytes(), pathlib.Path(output).read_bytes())
 
