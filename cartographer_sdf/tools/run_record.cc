@@ -26,18 +26,13 @@ namespace {
 
 constexpr char kAnyWarning[] = "warning";
 
-constexpr RunWarning kAllWarnings[] = {RunWarning::kRepaired,
-                                       RunWarning::kIncomplete,
-                                       RunWarning::kTornSubmaps,
-                                       RunWarning::kNotConverged,
-                                       RunWarning::kOdometryBends,
-                                       RunWarning::kDoubtful,
-                                       RunWarning::kOdometryLeftOut,
-                                       RunWarning::kContradictions,
-                                       RunWarning::kSessionsLeftOut,
-                                       RunWarning::kWindowsNotLocalized,
-                                       RunWarning::kPlacesNotUsed,
-                                       RunWarning::kMapsFailed};
+constexpr RunWarning kAllWarnings[] = {
+    RunWarning::kRepaired,        RunWarning::kIncomplete,
+    RunWarning::kTornSubmaps,     RunWarning::kNotConverged,
+    RunWarning::kOdometryBends,   RunWarning::kDoubtful,
+    RunWarning::kOdometryLeftOut, RunWarning::kContradictions,
+    RunWarning::kSessionsLeftOut, RunWarning::kWindowsNotLocalized,
+    RunWarning::kPlacesNotUsed,   RunWarning::kMapsFailed};
 
 std::vector<std::string> AllConditions() {
   std::vector<std::string> names = {OutcomeName(Outcome::kRefused),

@@ -24,7 +24,6 @@
 #include <string>
 #include <vector>
 
-#include "cartographer/mapping/pose_graph.h"
 #include "cartographer_sdf/live/map_builder.h"
 #include "glog/logging.h"
 #include "test/live/host.h"

@@ -81,7 +81,8 @@ TEST_F(HostMotionTest, OdometryBendsAMapAsPredicted) {
   const std::optional<HostMotion> predicted = Predict(result);
   ASSERT_TRUE(predicted.has_value());
   const double motion = MotionByStock(output, result.closed.pose_graph);
-  EXPECT_GT(motion, 0.5);
+  // More than the program is silent about.
+  EXPECT_GT(motion, 0.1);
   EXPECT_NEAR(predicted->max_translation, motion, 0.02 * motion);
 }
 

@@ -19,6 +19,7 @@
 #include "test/testing/shared_data.h"
 #include "test/testing/slipped_map.h"
 #include "test/testing/temporary_directory.h"
+#include "test/testing/two_offices.h"
 
 namespace cartographer_sdf::close_loops_test {
 namespace {
@@ -99,6 +100,33 @@ TEST_F(CloseLoopsTest, StraightensASimulatedMap) {
   EXPECT_THAT(
       page, AllOf(HasSubstr("open.pbstream"), HasSubstr("Before"),
                   HasSubstr("SDF_GLOBAL_CONSTRAINTS"), Not(HasSubstr("://"))));
+}
+
+TEST_F(CloseLoopsTest, TellsWhetherCartographerWouldBendTheMap) {
+  const std::string poor = File("poor.pbstream");
+  DriftOptions drift;
+  drift.odometry_yaw_bias = 0.01;
+  drift.local_slam_fraction = 0.05;
+  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, poor,
+                           /*with_submaps=*/true, drift);
+  const std::vector<std::string> arguments = {
+      "close_loops",   poor, "-o", File("poor_closed.pbstream"), "--fail_on",
+      "odometry_bends"};
+  const ProgramResult with_odometry = RunTestProgram(arguments);
+  EXPECT_EQ(with_odometry.exit_code, 3) << with_odometry.error;
+  EXPECT_THAT(with_odometry.output,
+              AllOf(HasSubstr("Cartographer would move nodes by up to "),
+                    HasSubstr("or write it with --drop_odometry.\n")));
+  std::vector<std::string> more = arguments;
+  more.emplace_back("--drop_odometry");
+  const ProgramResult without = RunTestProgram(more);
+  EXPECT_EQ(without.exit_code, 0) << without.error;
+  EXPECT_THAT(without.output, Not(HasSubstr("Cartographer would move")));
+  const auto map = ReadMap(File("poor_closed.pbstream"));
+  ASSERT_TRUE(map.ok()) << map.status();
+  EXPECT_EQ(map->num_records.count("odometry_data"), 0u);
+  // Nothing is written.
+  EXPECT_EQ(RunTestProgram({"audit", poor, "--drop_odometry"}).exit_code, 2);
 }
 
 TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
