@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/place_store/described_map.h"
@@ -142,16 +143,22 @@ void JudgeCycles(const ConsistencyOptions& consistency,
   }
 }
 
-PoseGraph WithoutDoubtful(const PoseGraph& pose_graph,
-                          const std::vector<AuditedConstraint>& constraints) {
-  std::vector<bool> is_dropped(pose_graph.constraints.size(), false);
+std::set<size_t> DoubtfulOf(const std::vector<AuditedConstraint>& constraints) {
+  std::set<size_t> doubtful;
   for (const AuditedConstraint& audited : constraints) {
-    is_dropped[audited.constraint] = IsDoubtful(audited.verdict);
+    if (IsDoubtful(audited.verdict)) doubtful.insert(audited.constraint);
   }
+  return doubtful;
+}
+
+PoseGraph Without(const std::set<size_t>& dropped,
+                  const PoseGraph& pose_graph) {
   PoseGraph result = pose_graph;
   result.constraints.clear();
   for (size_t k = 0; k < pose_graph.constraints.size(); ++k) {
-    if (!is_dropped[k]) result.constraints.push_back(pose_graph.constraints[k]);
+    if (dropped.count(k) == 0) {
+      result.constraints.push_back(pose_graph.constraints[k]);
+    }
   }
   return result;
 }
@@ -194,12 +201,6 @@ void Rehabilitate(const AuditOptions& options,
   }
 }
 
-size_t CountDoubtful(const std::vector<AuditedConstraint>& constraints) {
-  return static_cast<size_t>(std::count_if(
-      constraints.begin(), constraints.end(),
-      [](const AuditedConstraint& c) { return IsDoubtful(c.verdict); }));
-}
-
 std::vector<AuditedConstraint> ListConstraints(
     const PoseGraph& pose_graph, const GroupedConstraints& grouped,
     const std::vector<AuditedGroup>& groups) {
@@ -237,8 +238,58 @@ OptimizationOptions WithoutOdometry(OptimizationOptions options) {
 }
 
 bool ContradictsKept(const OutlierRejectionOptions& options,
-                     std::vector<AuditedConstraint> constraints) {
-  return DoubtOutliers(options, &constraints);
+                     const std::set<size_t>& dropped,
+                     const std::vector<AuditedConstraint>& constraints) {
+  std::vector<std::optional<ConstraintError>> errors;
+  for (const AuditedConstraint& audited : constraints) {
+    errors.push_back(dropped.count(audited.constraint) > 0
+                         ? std::nullopt
+                         : std::make_optional(audited.error_after));
+  }
+  return !FindOutliers(options, errors).empty();
+}
+
+// The indices of the list, if there is one, or an error if the map does not
+// have it so.
+absl::StatusOr<std::optional<std::set<size_t>>> CheckDropList(
+    const std::optional<std::vector<ListedConstraint>>& list,
+    const PoseGraph& pose_graph) {
+  if (!list) return std::optional<std::set<size_t>>();
+  std::set<size_t> dropped;
+  for (const ListedConstraint& listed : *list) {
+    const size_t k = listed.constraint;
+    if (k >= pose_graph.constraints.size() ||
+        pose_graph.constraints[k].tag != Constraint::Tag::kInterSubmap ||
+        pose_graph.constraints[k].submap != listed.submap ||
+        pose_graph.constraints[k].node != listed.node) {
+      return absl::InvalidArgumentError(absl::StrFormat(
+          "the map has no constraint %d between submap (%d,%d) and node "
+          "(%d,%d): the list was made for another map",
+          k, listed.submap.trajectory, listed.submap.index,
+          listed.node.trajectory, listed.node.index));
+    }
+    if (!dropped.insert(k).second) {
+      return absl::InvalidArgumentError(
+          absl::StrFormat("constraint %d is listed twice", k));
+    }
+  }
+  return std::make_optional(std::move(dropped));
+}
+
+// By looks and cycles.
+std::vector<AuditedGroup> JudgeGroups(
+    const LoopClosingOptions& loop_closing, const AuditOptions& options,
+    const DescribedMap& map, const std::vector<ConstraintGroup>& groups,
+    const Executor& executor, StageClock* const clock) {
+  std::vector<AuditedGroup> judged =
+      ExamineGroups(loop_closing.recognition.match, options, map.places, groups,
+                    executor, clock->Begin("compare submaps"));
+  for (AuditedGroup& group : judged) {
+    group.verdict = JudgeLooks(options, group.claim);
+  }
+  clock->Begin("check cycles");
+  JudgeCycles(loop_closing.closing.consistency, map.odometry, &judged);
+  return judged;
 }
 
 // Tests the constraints against the map made without the doubtful ones.
@@ -246,9 +297,11 @@ class MapJudge {
  public:
   // Nothing is owned.
   MapJudge(const AuditOptions& options, const std::set<int>& frozen,
+           const std::optional<std::set<size_t>>& drop_list,
            const ProgressCallback& on_progress, Audit* const audit)
       : options_(options),
         frozen_(frozen),
+        drop_list_(drop_list),
         on_progress_(on_progress),
         audit_(audit) {}
 
@@ -259,14 +312,16 @@ class MapJudge {
     const OptimizationOptions judging = WithoutOdometry(audit_->optimization);
     std::vector<AuditedConstraint>* const constraints = &audit_->constraints;
     audit_->pose_graph = audit_->state.pose_graph;
-    if (CountDoubtful(*constraints) > 0) OptimizeWith(judging);
+    if (!DoubtfulOf(*constraints).empty()) TryWithoutDoubtful(judging);
     for (int k = 0; k < options_.outlier_rejection.max_num_rounds; ++k) {
       if (!DoubtOutliers(options_.outlier_rejection, constraints)) break;
-      OptimizeWith(judging);
+      TryWithoutDoubtful(judging);
     }
     Rehabilitate(options_, constraints);
-    audit_->num_doubtful = CountDoubtful(*constraints);
-    if (audit_->num_doubtful > 0) {
+    const std::set<size_t> doubtful = DoubtfulOf(*constraints);
+    audit_->num_doubtful = doubtful.size();
+    audit_->dropped = drop_list_.value_or(doubtful);
+    if (!audit_->dropped.empty()) {
       Mend(judging);
     } else {
       audit_->pose_graph = audit_->state.pose_graph;
@@ -275,12 +330,17 @@ class MapJudge {
   }
 
  private:
-  // Makes the map without doubtful constraints, with odometry unless it
-  // contradicts what is kept.
+  void TryWithoutDoubtful(const OptimizationOptions& optimization) {
+    audit_->dropped = DoubtfulOf(audit_->constraints);
+    OptimizeWith(optimization);
+  }
+
+  // Makes the map without what is dropped, with odometry unless it contradicts
+  // what is kept.
   void Mend(const OptimizationOptions& without_odometry) {
     OptimizeWith(audit_->optimization);
-    audit_->leaves_out_odometry =
-        ContradictsKept(options_.outlier_rejection, audit_->constraints);
+    audit_->leaves_out_odometry = ContradictsKept(
+        options_.outlier_rejection, audit_->dropped, audit_->constraints);
     if (!audit_->leaves_out_odometry) return;
     audit_->optimization = without_odometry;
     OptimizeWith(without_odometry);
@@ -290,7 +350,7 @@ class MapJudge {
   // effect.
   void OptimizeWith(const OptimizationOptions& optimization) {
     const PoseGraph& before = audit_->state.pose_graph;
-    audit_->pose_graph = WithoutDoubtful(before, audit_->constraints);
+    audit_->pose_graph = Without(audit_->dropped, before);
     audit_->optimizations.push_back(
         Optimize(optimization, frozen_, &audit_->pose_graph));
     MeasureErrors(before, audit_->pose_graph, &audit_->constraints);
@@ -303,6 +363,7 @@ class MapJudge {
 
   const AuditOptions& options_;
   const std::set<int>& frozen_;
+  const std::optional<std::set<size_t>>& drop_list_;
   const ProgressCallback& on_progress_;
   Audit* const audit_;
   int num_rounds_ = 0;
@@ -311,7 +372,8 @@ class MapJudge {
 // Compares the walls of the map with those of the map as read.
 void CompareQuality(const RecognitionOptions& recognition,
                     const std::map<SubmapId, Place>& places,
-                    const Executor& executor, Audit* const audit) {
+                    const bool has_drop_list, const Executor& executor,
+                    Audit* const audit) {
   // Of all wall, beyond what the choice of pairs makes, and relative to the map
   // as read.
   constexpr double kMaxIncrease = 0.002, kMaxRelativeIncrease = 0.1;
@@ -321,14 +383,15 @@ void CompareQuality(const RecognitionOptions& recognition,
                              executor);
   };
   audit->quality_before = measure(audit->state.pose_graph);
-  if (audit->num_doubtful == 0) {
+  if (audit->dropped.empty()) {
     audit->quality_after = audit->quality_before;
     return;
   }
   audit->quality_after = measure(audit->pose_graph);
   const double before = audit->quality_before.contradiction_ratio;
   const double after = audit->quality_after.contradiction_ratio;
-  if (after > before + std::max(kMaxIncrease, kMaxRelativeIncrease * before)) {
+  if (!has_drop_list &&
+      after > before + std::max(kMaxIncrease, kMaxRelativeIncrease * before)) {
     audit->refusal = absl::StrFormat(
         "without the doubtful constraints more of the walls would stand in "
         "free space: %.1f %%, now %.1f %%",
@@ -372,12 +435,11 @@ bool IsDoubtful(const AuditVerdict verdict) {
          verdict != AuditVerdict::kUnchecked;
 }
 
-absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
-                               const AuditOptions& options,
-                               const MapSource& source,
-                               const std::set<int>& frozen_trajectories,
-                               const Executor& executor,
-                               const StageCallback& on_stage) {
+absl::StatusOr<Audit> AuditMap(
+    const LoopClosingOptions& loop_closing, const AuditOptions& options,
+    const MapSource& source, const std::set<int>& frozen_trajectories,
+    const Executor& executor, const StageCallback& on_stage,
+    const std::optional<std::vector<ListedConstraint>>& drop_list) {
   CHECK_EQ(Validate(loop_closing), "");
   CHECK_EQ(Validate(options), "");
   const MatchOptions& match = loop_closing.recognition.match;
@@ -391,22 +453,22 @@ absl::StatusOr<Audit> AuditMap(const LoopClosingOptions& loop_closing,
                   clock.Begin("read and describe"));
   if (!map.ok()) return map.status();
   const PoseGraph& pose_graph = map->state.pose_graph;
+  const absl::StatusOr<std::optional<std::set<size_t>>> listed =
+      CheckDropList(drop_list, pose_graph);
+  if (!listed.ok()) return listed.status();
   const GroupedConstraints grouped =
       GroupConstraints(options.grouping, pose_graph, CentroidsOf(map->places));
-  audit.groups = ExamineGroups(match, options, map->places, grouped.groups,
-                               executor, clock.Begin("compare submaps"));
-  for (AuditedGroup& group : audit.groups) {
-    group.verdict = JudgeLooks(options, group.claim);
-  }
-  clock.Begin("check cycles");
-  JudgeCycles(loop_closing.closing.consistency, map->odometry, &audit.groups);
+  audit.groups = JudgeGroups(loop_closing, options, *map, grouped.groups,
+                             executor, &clock);
   audit.constraints = ListConstraints(pose_graph, grouped, audit.groups);
   audit.optimization = OptimizationInForce(loop_closing.closing, pose_graph);
   audit.state = std::move(map->state);
-  MapJudge(options, frozen_trajectories, clock.Begin("optimise"), &audit)
+  MapJudge(options, frozen_trajectories, *listed, clock.Begin("optimise"),
+           &audit)
       .Judge();
   clock.Begin("compare walls");
-  CompareQuality(loop_closing.recognition, map->places, executor, &audit);
+  CompareQuality(loop_closing.recognition, map->places, listed->has_value(),
+                 executor, &audit);
   clock.End();
   return audit;
 }

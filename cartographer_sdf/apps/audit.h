@@ -104,36 +104,49 @@ struct AuditedGroup {
   AuditVerdict verdict;
 };
 
+// A constraint of a list of those to drop, as audit wrote it or a person chose.
+struct ListedConstraint {
+  size_t constraint = 0;  // index in PoseGraph::constraints
+  SubmapId submap;
+  NodeId node;
+};
+
 struct Audit {
   MapState state;  // as read
   std::vector<AuditedGroup> groups;
   // All inter-submap constraints, in their order.
   std::vector<AuditedConstraint> constraints;
   size_t num_doubtful = 0;
-  // Optimised without the doubtful constraints; the input graph if there are
-  // none.
+  // Indices of the constraints that the map below lacks: those of the list, if
+  // one was given, else the doubtful ones.
+  std::set<size_t> dropped;
+  // Optimised without them; the input graph if there are none.
   PoseGraph pose_graph;
   // In force, odometry weights as inferred; zero if odometry contradicts
   // constraints that are kept.
   OptimizationOptions optimization;
   bool leaves_out_odometry = false;
-  // Of the map as read, and of the one without doubtful constraints.
+  // Of the map as read, and of the one without those that are dropped.
   MapQuality quality_before;
   MapQuality quality_after;
   // Why the map without doubtful constraints must not replace the one that was
-  // read: its walls agree less. Empty otherwise.
+  // read: its walls agree less. Empty otherwise, and where a list says what to
+  // drop.
   std::string refusal;
   std::vector<OptimizationSummary> optimizations;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Fails if the file cannot be read. Of the loop closing options, those for
-// places, matching, consistency and optimisation apply. The result does not
+// Fails if the file cannot be read, or if `drop_list` names a constraint that
+// the map does not have so, or twice. With a list, the verdicts are the same,
+// but it says which constraints are dropped. Of the loop closing options, those
+// for places, matching, consistency and optimisation apply. The result does not
 // depend on the number of threads.
 [[nodiscard]] absl::StatusOr<Audit> AuditMap(
     const LoopClosingOptions& loop_closing, const AuditOptions& options,
     const MapSource& source, const std::set<int>& frozen_trajectories,
-    const Executor& executor, const StageCallback& on_stage = {});
+    const Executor& executor, const StageCallback& on_stage = {},
+    const std::optional<std::vector<ListedConstraint>>& drop_list = {});
 
 }  // namespace cartographer_sdf
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@
 
 namespace cartographer_sdf::audit_test {
 namespace {
+
+using ::testing::HasSubstr;
 
 Executor Threads(const int num_threads) { return MakeExecutor(num_threads); }
 
@@ -177,6 +180,78 @@ TEST_F(AuditTest, SaysWhatIsWrongWithTheFile) {
 
 // The walls of the spoilt map agree nearly as well as those of the good one: a
 // robust loss keeps the wrong constraints from bending it.
+// The constraints of the map, as a list to drop.
+std::vector<ListedConstraint> ListOf(const PoseGraph& pose_graph,
+                                     const std::set<size_t>& indices) {
+  std::vector<ListedConstraint> list;
+  for (const size_t k : indices) {
+    list.push_back(
+        {k, pose_graph.constraints[k].submap, pose_graph.constraints[k].node});
+  }
+  return list;
+}
+
+TEST_F(AuditTest, DropsWhatAListSaysAndNothingElse) {
+  const PoseGraph& before = audit_->state.pose_graph;
+  ASSERT_GT(audit_->num_doubtful, 2u);
+  EXPECT_EQ(audit_->dropped.size(), audit_->num_doubtful);
+  // One that is doubtful is kept, one that is not is dropped.
+  std::set<size_t> chosen = audit_->dropped;
+  chosen.erase(chosen.begin());
+  for (const AuditedConstraint& audited : audit_->constraints) {
+    if (IsDoubtful(audited.verdict)) continue;
+    chosen.insert(audited.constraint);
+    break;
+  }
+  const auto audit_with = [](const std::vector<ListedConstraint>& list) {
+    return AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"),
+                    {}, Threads(2), {}, list);
+  };
+  const absl::StatusOr<Audit> listed = audit_with(ListOf(before, chosen));
+  ASSERT_TRUE(listed.ok()) << listed.status();
+  EXPECT_EQ(listed->dropped, chosen);
+  EXPECT_EQ(listed->pose_graph.constraints.size(),
+            before.constraints.size() - chosen.size());
+  // What is judged is the same.
+  EXPECT_EQ(listed->num_doubtful, audit_->num_doubtful);
+  for (size_t k = 0; k < listed->constraints.size(); ++k) {
+    EXPECT_EQ(listed->constraints[k].verdict, audit_->constraints[k].verdict);
+  }
+  // The reader's choice is not refused.
+  EXPECT_EQ(listed->refusal, "");
+  const absl::StatusOr<Audit> nothing = audit_with({});
+  ASSERT_TRUE(nothing.ok());
+  EXPECT_EQ(nothing->pose_graph.constraints.size(), before.constraints.size());
+  EXPECT_EQ(nothing->optimizations.size(), audit_->optimizations.size() - 1);
+}
+
+TEST_F(AuditTest, RefusesListsOfOtherMaps) {
+  const PoseGraph& before = audit_->state.pose_graph;
+  const size_t doubtful = *audit_->dropped.begin();
+  const std::vector<ListedConstraint> good = ListOf(before, {doubtful});
+  const auto error_of = [](const std::vector<ListedConstraint>& list) {
+    const absl::StatusOr<Audit> audit =
+        AuditMap(LoopClosingOptions(), AuditOptions(), File("bad.pbstream"), {},
+                 Threads(2), {}, list);
+    return audit.ok() ? "" : std::string(audit.status().message());
+  };
+  EXPECT_THAT(error_of({good[0], good[0]}), HasSubstr("listed twice"));
+  std::vector<ListedConstraint> wrong(4, good[0]);
+  wrong[0].constraint = before.constraints.size();
+  wrong[1].node.index += 1;
+  wrong[2].submap.trajectory = -5;
+  wrong[3].constraint = std::numeric_limits<size_t>::max();
+  for (const ListedConstraint& one : wrong) {
+    EXPECT_THAT(error_of({one}), HasSubstr("made for another map"));
+  }
+  // An intra-submap constraint is what a submap is made of.
+  for (size_t k = 0; k < before.constraints.size(); ++k) {
+    if (before.constraints[k].tag == Constraint::Tag::kInterSubmap) continue;
+    EXPECT_THAT(error_of(ListOf(before, {k})), HasSubstr("another map"));
+    break;
+  }
+}
+
 TEST_F(AuditTest, MeasuresWalls) {
   const MapQuality& spoilt = audit_->quality_before;
   const MapQuality& mended = audit_->quality_after;
