@@ -531,8 +531,8 @@ SDF_GLOBAL_CONSTRAINTS = {
   -- The HTML report.
   report = {
     -- [pixels] Longer side of the pictures of the whole map.
-    map_picture_pixels = 1600,
-    -- [pixels] Longer side of the picture of a matched pair.
-    closure_picture_pixels = 360,
+    map_picture_pixels = 2000,
+    -- [pixels] Longer side of the picture of a submap.
+    submap_picture_pixels = 300,
   },
 }

@@ -82,8 +82,8 @@ SDF_GLOBAL_CONSTRAINTS.scan_places.resolution_meters = 0.05
 -- refused. Larger: tolerates more change between the maps.
 SDF_GLOBAL_CONSTRAINTS.fold_check.max_folded_fraction = 0.2
 
--- Number of closures with a picture in a report; the others are only listed.
+-- Number of submaps with a picture in a report; pairs of others are only listed.
 -- Larger: larger pages.
-SDF_GLOBAL_CONSTRAINTS.report.max_closure_pictures = 60
+SDF_GLOBAL_CONSTRAINTS.report.max_submap_pictures = 300
 
 return SDF_GLOBAL_CONSTRAINTS

@@ -56,7 +56,8 @@ OFFLINE = {
 }
 TOP = {
     "live": [*CORE, "file", "recording", "pose_graph", "pbstream",
-             "place_store", "closing", "localization", "config", "proto"],
+             "place_store", "closing", "localization", "config",
+             "report/report_options.h", "proto"],
     "tools": [*CORE, *OFFLINE, "live"],
     # Packages of their own, on top of what is installed.
     "ros": ["geometry", "live"],
@@ -72,7 +73,7 @@ HOST_FOLDERS = ("cartographer_sdf/live/", "test/live/", "ros/")
 SPDX = ("SPDX-FileCopyrightText: 2026 The cartographer_sdf authors",
         "SPDX-License-Identifier: Apache-2.0")
 SPDX_SUFFIXES = (".h", ".cc", ".proto", ".py", ".sh", ".lua", ".cmake",
-                 ".cmake.in")
+                 ".cmake.in", ".html", ".css", ".js")
 SPDX_NAMES = ("CMakeLists.txt", ".ci/run")
 CHECKED = ("CMakeLists.txt", ".ci", "cartographer_sdf", "cmake",
            "configuration_files", "proto", "python", "ros", "scripts", "test")
@@ -155,9 +156,10 @@ def check_guard(path, text):
 def check_spdx(text):
     """A violation by a missing licence header, or None."""
     lines = text.splitlines()[:3]
-    if lines and lines[0].startswith("#!"):
+    if lines and lines[0].startswith(("#!", "<!DOCTYPE")):
         lines = lines[1:]
-    found = [re.sub(r"^(//|#|--)\s*", "", line) for line in lines[:2]]
+    found = [re.sub(r"^(?://|#|--|/\*|<!--)\s*(.*?)\s*(?:\*/|-->)?$", r"\1", line)
+             for line in lines[:2]]
     return None if found == list(SPDX) else "no SPDX header at the top"
 
 

@@ -3,6 +3,9 @@
 
 #include "cartographer_sdf/apps/close_loops.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "cartographer_sdf/place_store/described_map.h"
 #include "glog/logging.h"
 
@@ -36,6 +39,9 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   std::vector<Match> matches = RecognizeWithin(
       options.recognition, map->trajectory_places(), executor, &clock);
   result.num_matches = matches.size();
+  std::copy_if(
+      matches.begin(), matches.end(), std::back_inserter(result.refused),
+      [](const Match& match) { return match.verdict != Verdict::kAccepted; });
   ClosingOptions closing = options.closing;
   closing.optimization = OptimizationInForce(closing, map->state.pose_graph);
   result.optimization = closing.optimization;

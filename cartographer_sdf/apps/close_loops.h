@@ -34,6 +34,8 @@ struct LoopClosingResult {
   MapState state;  // as read
   size_t num_places = 0;
   size_t num_matches = 0;  // verified poses, accepted or not
+  // Of these, what verification refused.
+  std::vector<Match> refused;
   ClosedGraph closed;
   // The options in force, odometry weights as inferred.
   OptimizationOptions optimization;

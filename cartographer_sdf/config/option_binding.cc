@@ -172,4 +172,35 @@ void OptionWriter::Leave(const std::string&) {
   WriteLine(depth_ > 0 ? "}," : "}");
 }
 
+void OptionLister::Add(const char* const key, const std::string& value) {
+  std::vector<std::string> path = tables_;
+  path.push_back(key);
+  options_.emplace_back(absl::StrJoin(path, "."), value);
+}
+
+void OptionLister::Visit(const char* const key, double& option) {
+  Add(key, FormatNumber(option));
+}
+
+void OptionLister::Visit(const char* const key, int& option) {
+  Add(key, absl::StrCat(option));
+}
+
+void OptionLister::Visit(const char* const key, bool& option) {
+  Add(key, option ? "true" : "false");
+}
+
+void OptionLister::VisitName(const char* const key,
+                             const std::vector<std::string>& names,
+                             int& index) {
+  Add(key, absl::StrCat("\"", names.at(static_cast<size_t>(index)), "\""));
+}
+
+bool OptionLister::Enter(const char* const key) {
+  tables_.push_back(key);
+  return true;
+}
+
+void OptionLister::Leave(const std::string&) { tables_.pop_back(); }
+
 }  // namespace cartographer_sdf

@@ -19,10 +19,12 @@
 
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/config/lua_dictionary.h"
+#include "cartographer_sdf/report/report_options.h"
 
 namespace cartographer_sdf {
 
@@ -105,6 +107,52 @@ class OptionWriter : public OptionVisitor {
   int depth_ = 0;
   std::string text_;
 };
+
+// The options by their paths, e.g. "match.verification.min_score", as Lua
+// writes their values.
+class OptionLister : public OptionVisitor {
+ public:
+  [[nodiscard]] const std::vector<std::pair<std::string, std::string>>&
+  options() const {
+    return options_;
+  }
+
+ private:
+  void Visit(const char* key, double& option) override;
+  void Visit(const char* key, int& option) override;
+  void Visit(const char* key, bool& option) override;
+  void VisitName(const char* key, const std::vector<std::string>& names,
+                 int& index) override;
+  bool Enter(const char* key) override;
+  void Leave(const std::string& problem) override;
+  void Add(const char* key, const std::string& value);
+
+  std::vector<std::string> tables_;
+  std::vector<std::pair<std::string, std::string>> options_;
+};
+
+// Paths begin below the table of the options themselves.
+template <typename T>
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> ListOptions(
+    T options) {
+  OptionLister lister;
+  VisitOptions(lister, options);
+  return lister.options();
+}
+
+// The options that differ from their defaults.
+template <typename T>
+[[nodiscard]] std::vector<ChangedOption> ListChangedOptions(const T& options) {
+  const auto in_force = ListOptions(options);
+  const auto defaults = ListOptions(T());
+  std::vector<ChangedOption> changed;
+  for (size_t k = 0; k < in_force.size(); ++k) {
+    if (in_force[k].second == defaults[k].second) continue;
+    changed.push_back(
+        {in_force[k].first, in_force[k].second, defaults[k].second});
+  }
+  return changed;
+}
 
 // Loads the options in the table `name` of a file, see LoadLuaDictionary.
 // Fields that are not visited keep their value in `options`.

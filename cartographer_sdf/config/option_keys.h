@@ -383,8 +383,8 @@ inline void VisitOptions(OptionVisitor& visit, FoldCheckOptions& options) {
 
 inline void VisitOptions(OptionVisitor& visit, ReportOptions& options) {
   visit("map_picture_pixels", options.map_picture_pixels);
-  visit("closure_picture_pixels", options.closure_picture_pixels);
-  visit("max_closure_pictures", options.max_closure_pictures);
+  visit("submap_picture_pixels", options.submap_picture_pixels);
+  visit("max_submap_pictures", options.max_submap_pictures);
 }
 
 inline void VisitOptions(OptionVisitor& visit, Options& options) {

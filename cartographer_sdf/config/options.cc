@@ -23,4 +23,8 @@ std::string FormatOptions(const Options& options) {
   return FormatFile(kOptionsTable, options);
 }
 
+std::vector<ChangedOption> ChangedOptions(const Options& options) {
+  return ListChangedOptions(options);
+}
+
 }  // namespace cartographer_sdf

@@ -49,6 +49,9 @@ struct Options {
 // As Lua that LoadOptions would read.
 [[nodiscard]] std::string FormatOptions(const Options& options);
 
+// Those that differ from their defaults.
+[[nodiscard]] std::vector<ChangedOption> ChangedOptions(const Options& options);
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_CONFIG_OPTIONS_H_

@@ -95,4 +95,8 @@ std::string FormatLiveOptions(const LiveOptions& options) {
   return FormatFile(kTableName, options);
 }
 
+std::vector<ChangedOption> ChangedLiveOptions(const LiveOptions& options) {
+  return ListChangedOptions(options);
+}
+
 }  // namespace cartographer_sdf

@@ -19,6 +19,7 @@
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
+#include "cartographer_sdf/report/report_options.h"
 
 namespace cartographer_sdf {
 
@@ -87,6 +88,10 @@ struct LiveOptions {
 
 // Formats the options as Lua that LoadLiveOptions can read.
 [[nodiscard]] std::string FormatLiveOptions(const LiveOptions& options);
+
+// Those that differ from their defaults.
+[[nodiscard]] std::vector<ChangedOption> ChangedLiveOptions(
+    const LiveOptions& options);
 
 }  // namespace cartographer_sdf
 

@@ -4,21 +4,20 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
 #include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/reports.h"
 
 namespace cartographer_sdf {
 namespace {
 
-constexpr Color kKeptColor{0.2, 0.45, 0.7, 0.35};
-constexpr Color kDoubtfulColor{0.84, 0.15, 0.16, 0.85};
-constexpr size_t kMaxNamedConstraints = 6;
+constexpr double kAuditDegrees = 180. / M_PI;  // of a radian
 
 // A group and the outcomes of its constraints.
 struct GroupOutcome {
@@ -53,88 +52,135 @@ std::vector<GroupOutcome> Outcomes(const Audit& audit) {
   return outcomes;
 }
 
-std::string VerdictText(const GroupOutcome& outcome) {
-  switch (outcome.verdict) {
-    case AuditVerdict::kConfirmed:
-      return "looks right";
-    case AuditVerdict::kAgreesWithMap:
-      return "not certain by itself, but the map made without it agrees";
-    case AuditVerdict::kUnchecked:
-      return "could not be checked";
-    case AuditVerdict::kContradicted:
-      return "walls of one stand in free space of the other";
-    case AuditVerdict::kAmbiguous:
-      return "another pose of the two submaps is as good";
-    case AuditVerdict::kUnlikely:
-      return outcome.group->claim.is_held ? "too little agrees"
-                                          : "the walls do not support its pose";
-    case AuditVerdict::kOutvoted:
-      return "constraints with more weight contradict it";
-    case AuditVerdict::kUnsupported:
-      return "no other constraint supports it, and it is not certain alone";
-    case AuditVerdict::kContradictedByMap:
-      return "the map made of the others contradicts it";
+std::set<size_t> DoubtfulIn(const Audit& audit) {
+  std::set<size_t> doubtful;
+  for (const AuditedConstraint& audited : audit.constraints) {
+    if (IsDoubtful(audited.verdict)) doubtful.insert(audited.constraint);
   }
-  return "";
+  return doubtful;
 }
 
-std::string ReasonOf(const Audit& audit, const GroupOutcome& outcome) {
+// Long: a list of all.
+std::vector<RowStatus> AuditStatuses() {
+  const auto doubtful = [](const AuditVerdict verdict,
+                           const char* const meaning,
+                           const char* const option) {
+    return RowStatus{AuditVerdictName(verdict),
+                     absl::StrCat("doubtful: ", AuditVerdictName(verdict)),
+                     Tone::kBad, meaning, option};
+  };
+  const auto kept = [](const AuditVerdict verdict, const Tone tone,
+                       const char* const meaning, const char* const option) {
+    return RowStatus{AuditVerdictName(verdict),
+                     absl::StrCat("kept: ", AuditVerdictName(verdict)), tone,
+                     meaning, option};
+  };
+  return {
+      doubtful(AuditVerdict::kContradicted,
+               "Walls of one stand in free space of the other.",
+               "audit.max_contradiction_ratio"),
+      doubtful(AuditVerdict::kContradictedByMap,
+               "The map made of the others contradicts it.",
+               "audit.outlier_rejection.max_translation_error_meters"),
+      doubtful(AuditVerdict::kOutvoted,
+               "Constraints with more weight contradict it.",
+               "loop_closing.closing.consistency.max_mahalanobis_distance"),
+      doubtful(AuditVerdict::kAmbiguous,
+               "Another pose of the two submaps is as good.",
+               "audit.min_margin"),
+      doubtful(AuditVerdict::kUnlikely,
+               "The walls do not support its pose, or too little agrees.",
+               "audit.min_score"),
+      doubtful(AuditVerdict::kUnsupported,
+               "No other constraint supports it, and it is not certain alone.",
+               "loop_closing.closing.consistency.min_unsupported_score"),
+      kept(AuditVerdict::kAgreesWithMap, Tone::kCaution,
+           "Not certain by itself, but the map made without it agrees.",
+           "audit.max_agreeing_translation_meters"),
+      kept(AuditVerdict::kUnchecked, Tone::kCaution,
+           "It relates no two submaps with walls.", ""),
+      kept(AuditVerdict::kConfirmed, Tone::kGood,
+           "It looks right, and nothing contradicts it.", "")};
+}
+
+// Long: a list of all.
+std::vector<Measure> AuditMeasures(const LoopClosingOptions& stages,
+                                   const AuditOptions& options) {
+  using Bound = Measure::Bound;
+  const std::string grouping = "audit.grouping.max_distance_meters";
+  const std::string outliers = "audit.outlier_rejection.";
+  return {
+      {"error_after", "error without doubtful ones", "m", 3,
+       "The largest error of its constraints in the map made without the "
+       "doubtful ones.",
+       true, Bound::kAtMost,
+       options.outlier_rejection.max_translation_error_meters,
+       outliers + "max_translation_error_meters"},
+      {"rotation_error_after", "rotation error without doubtful ones", "deg", 2,
+       "The same of their rotation.", false, Bound::kAtMost,
+       kAuditDegrees * options.outlier_rejection.max_rotation_error,
+       outliers + "max_rotation_error"},
+      {"error_before", "error before", "m", 3,
+       "The largest error of its constraints in the map as it was."},
+      {"contradiction_ratio", "contradictions", "%", 1,
+       "Wall points that stand in the free space of the other submap, in the "
+       "worse direction.",
+       true, Bound::kAtMost, 100. * options.max_contradiction_ratio,
+       "audit.max_contradiction_ratio"},
+      {"probability", "probability", "%", 1,
+       "Of being right, by the looks of both submaps.", true, Bound::kAtLeast,
+       100. * ProbabilityOf(options.min_score), "audit.min_score"},
+      {"score", "score", "", 2, "The same as log-odds.", false, Bound::kAtLeast,
+       options.min_score, "audit.min_score"},
+      {"margin", "lead over other poses", "", 2,
+       "By how much the score exceeds that of the best other pose of the pair.",
+       false, Bound::kAtLeast, options.min_margin, "audit.min_margin"},
+      {"shift", "shift", "m", 3,
+       "How far registration moves the query from where the constraints put "
+       "it.",
+       false, Bound::kAtMost, options.grouping.max_distance_meters, grouping},
+      {"support", "support", "", 2,
+       "Total score of other groups that agree with it in cycles.", false,
+       Bound::kAtLeast, stages.closing.consistency.min_support,
+       "loop_closing.closing.consistency.min_support"},
+      {"contradiction", "contradiction", "", 2,
+       "Total score of other groups that disagree with it in cycles."},
+      {"hit_ratio", "walls that agree", "%", 1,
+       "Wall points that lie on a wall of the other submap, in the worse "
+       "direction."},
+      {"overlap_area", "common area", "m\xC2\xB2", 1,
+       "What both submaps have observed."},
+      {"constraints", "constraints", "", 0, "Of the group.", true},
+      {"doubtful", "doubtful", "", 0, "Of them."}};
+}
+
+std::vector<std::optional<double>> AuditValues(const GroupOutcome& outcome) {
   const AuditedGroup& group = *outcome.group;
-  std::vector<std::string> names;
   double before = 0.;
   ConstraintError after;
   for (const AuditedConstraint* const audited : outcome.constraints) {
-    const Constraint& constraint =
-        audit.state.pose_graph.constraints[audited->constraint];
-    if (names.size() < kMaxNamedConstraints) {
-      names.push_back(
-          absl::StrFormat("(%d,%d)-(%d,%d)", constraint.submap.trajectory,
-                          constraint.submap.index, constraint.node.trajectory,
-                          constraint.node.index));
-    }
     before = std::max(before, audited->error_before.translation);
     after.translation =
         std::max(after.translation, audited->error_after.translation);
     after.rotation = std::max(after.rotation, audited->error_after.rotation);
   }
-  const std::string more =
-      outcome.constraints.size() > names.size()
-          ? absl::StrCat(" and ", outcome.constraints.size() - names.size(),
-                         " more")
-          : "";
-  return absl::StrFormat(
-      "%s; margin %.1f to the next pose; support %.1f and contradiction %.1f "
-      "from cycles; error %.2f m in the original map, %.2f m and %.1f deg in "
-      "the map made without doubtful constraints; %d of %d constraints "
-      "(submap)-(node) doubtful: %s%s",
-      VerdictText(outcome), group.claim.margin, group.cycles.support,
-      group.cycles.contradiction, before, after.translation,
-      after.rotation * 180. / M_PI, outcome.num_doubtful,
-      outcome.constraints.size(), absl::StrJoin(names, " "), more);
+  return {after.translation,
+          kAuditDegrees * after.rotation,
+          before,
+          100. * group.claim.evidence.ContradictionRatio(),
+          100. * ProbabilityOf(group.claim.score),
+          group.claim.score,
+          group.claim.margin,
+          group.claim.shift,
+          group.cycles.support,
+          group.cycles.contradiction,
+          100. * group.claim.evidence.HitRatio(),
+          group.claim.evidence.overlap_area,
+          static_cast<double>(outcome.constraints.size()),
+          static_cast<double>(outcome.num_doubtful)};
 }
 
-std::vector<std::pair<std::string, std::string>> MakeSummary(
-    const Audit& audit) {
-  std::map<AuditVerdict, int> counts;
-  for (const AuditedConstraint& constraint : audit.constraints) {
-    ++counts[constraint.verdict];
-  }
-  std::vector<std::pair<std::string, std::string>> summary = {
-      {"Submaps", absl::StrCat(audit.state.submaps.size())},
-      {"Inter-submap constraints",
-       absl::StrFormat("%d, in %d groups", audit.constraints.size(),
-                       audit.groups.size())},
-      {"Doubtful", absl::StrCat(audit.num_doubtful)}};
-  for (const auto& [verdict, count] : counts) {
-    summary.emplace_back(
-        absl::StrCat(IsDoubtful(verdict) ? "Doubtful: " : "Kept: ",
-                     AuditVerdictName(verdict)),
-        absl::StrCat(count));
-  }
-  return summary;
-}
-
-std::vector<HistogramPlot> MakeHistograms(
+std::vector<HistogramPlot> AuditHistograms(
     const std::vector<GroupOutcome>& outcomes) {
   std::vector<double> kept_scores, doubtful_scores, kept_contradictions,
       doubtful_contradictions;
@@ -154,43 +200,111 @@ std::vector<HistogramPlot> MakeHistograms(
        {{"kept", kept_contradictions}, {"doubtful", doubtful_contradictions}}}};
 }
 
-ReportedClosure ReportedGroup(const Audit& audit, const GroupOutcome& outcome) {
-  const AuditedGroup& group = *outcome.group;
-  ReportedClosure reported;
-  reported.match.pair = {group.group.reference, group.group.query,
-                         group.group.T_reference_query, group.claim.score};
-  reported.match.evidence = group.claim.evidence;
-  reported.accepted = outcome.num_doubtful == 0;
-  reported.status = absl::StrCat(reported.accepted ? "kept: " : "doubtful: ",
-                                 AuditVerdictName(outcome.verdict));
-  reported.reason = ReasonOf(audit, outcome);
-  if (!reported.accepted) reported.link = kDoubtfulColor;
-  return reported;
+InspectedTable AuditGroupTable(const LoopClosingOptions& stages,
+                               const AuditOptions& options,
+                               const std::vector<GroupOutcome>& outcomes) {
+  InspectedTable table{
+      "constraints", "Constraints",
+      "Groups of constraints that claim the same pose of two submaps.",
+      AuditMeasures(stages, options), AuditStatuses()};
+  for (const GroupOutcome& outcome : outcomes) {
+    const AuditedGroup& group = *outcome.group;
+    InspectedRow row;
+    row.status = AuditVerdictName(outcome.verdict);
+    row.pair = {group.group.reference, group.group.query,
+                group.group.T_reference_query, group.claim.score};
+    row.values = AuditValues(outcome);
+    row.constraints = group.group.constraints;
+    table.rows.push_back(std::move(row));
+  }
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [](const InspectedRow& a, const InspectedRow& b) {
+                     return a.pair->score < b.pair->score;
+                   });
+  FinishTable(&table);
+  return table;
 }
 
-// The content without pictures: the groups that are doubtful, or that are kept
-// only because the map agrees.
-ReportContent MakeText(const std::string& input, const Audit& audit,
-                       const std::vector<GroupOutcome>& outcomes) {
-  ReportContent content;
-  content.title = "Audit of " + FileName(input);
-  content.subtitle =
-      "Every inter-submap constraint, checked against the shapes of its "
-      "submaps, the other constraints, and the map made without doubtful "
-      "constraints.";
-  content.summary = MakeSummary(audit);
-  AddOptimization(audit.optimization, audit.optimizations, &content);
-  content.closures_heading = "Doubtful constraints";
-  for (const GroupOutcome& outcome : outcomes) {
-    if (outcome.num_doubtful > 0 ||
-        outcome.verdict == AuditVerdict::kAgreesWithMap) {
-      content.closures.push_back(ReportedGroup(audit, outcome));
-    }
+std::string WallsText(const MapQuality& quality) {
+  return absl::StrFormat("%.2f %% in free space, %.3f m apart",
+                         100. * quality.contradiction_ratio,
+                         quality.wall_distance);
+}
+
+// The walls where submaps lie over each other.
+void AddQuality(const Audit& audit, Inspection* const inspection) {
+  if (audit.quality_before.num_pairs == 0) return;
+  inspection->numbers.emplace_back("Walls where submaps overlap",
+                                   WallsText(audit.quality_before));
+  if (audit.dropped.empty()) return;
+  inspection->numbers.emplace_back("Without the dropped constraints",
+                                   WallsText(audit.quality_after));
+}
+
+void AddAuditNumbers(const Audit& audit, Inspection* const inspection) {
+  std::map<AuditVerdict, int> counts;
+  for (const AuditedConstraint& constraint : audit.constraints) {
+    ++counts[constraint.verdict];
   }
-  SortByInterest(&content.closures);
-  content.histograms = MakeHistograms(outcomes);
-  content.stages = audit.stage_seconds;
-  return content;
+  inspection->numbers = {
+      {"Submaps", absl::StrCat(audit.state.submaps.size())},
+      {"Constraints between submaps",
+       absl::StrFormat("%d, in %d groups", audit.constraints.size(),
+                       audit.groups.size())},
+      {"Doubtful constraints", absl::StrCat(audit.num_doubtful)}};
+  for (const auto& [verdict, count] : counts) {
+    inspection->numbers.emplace_back(
+        absl::StrCat(IsDoubtful(verdict) ? "Doubtful: " : "Kept: ",
+                     AuditVerdictName(verdict)),
+        absl::StrCat(count));
+  }
+  AddQuality(audit, inspection);
+  AddDisplacement(inspection);
+  AddOptimization(audit.optimization, audit.optimizations, inspection);
+}
+
+// Which of the two maps is better, by how well its walls agree.
+void CompareMaps(const Audit& audit, Inspection* const inspection) {
+  const std::optional<Displacement> moved = DisplacementOf(inspection->states);
+  if (!moved) return;
+  const double before = audit.quality_before.contradiction_ratio;
+  const double after = audit.quality_after.contradiction_ratio;
+  const bool is_better = audit.refusal.empty() && after < before;
+  inspection->tone = !audit.refusal.empty() ? Tone::kBad : Tone::kCaution;
+  absl::StrAppendFormat(
+      &inspection->verdict,
+      " Without %s the map moves by up to %.2f m (%.2f m on average) and %s: "
+      "%.2f %% of the walls stand in free space where submaps overlap, %.2f %% "
+      "before.",
+      audit.dropped.size() == 1 ? "it" : "them", moved->largest, moved->mean,
+      is_better               ? "is better"
+      : audit.refusal.empty() ? "is hardly better"
+                              : "is WORSE, so that it is not written",
+      100. * after, 100. * before);
+}
+
+void JudgeAudit(const Audit& audit, const bool has_drop_list,
+                Inspection* const inspection) {
+  const std::string all =
+      Counted(audit.constraints.size(), "constraint") + " between submaps";
+  if (audit.constraints.empty()) {
+    inspection->verdict =
+        "The map has no constraints between submaps to check.";
+  } else if (audit.num_doubtful == 0) {
+    inspection->tone = Tone::kGood;
+    inspection->verdict =
+        absl::StrCat("Nothing is doubtful: all ", all, " hold.");
+  } else {
+    inspection->tone = Tone::kCaution;
+    inspection->verdict =
+        absl::StrCat(audit.num_doubtful, " of ", all,
+                     audit.num_doubtful == 1 ? " is" : " are", " doubtful.");
+  }
+  if (has_drop_list) {
+    absl::StrAppend(&inspection->verdict, " The list drops ",
+                    audit.dropped.size(), ".");
+  }
+  CompareMaps(audit, inspection);
 }
 
 constexpr char kHeader[] =
@@ -221,28 +335,41 @@ std::string GroupFields(const AuditedGroup& audited, const size_t number) {
 }  // namespace
 
 absl::Status WriteAuditReport(const ReportRequest& request,
+                              const LoopClosingOptions& stages,
+                              const AuditOptions& options,
                               const std::string& input, const Audit& audit,
                               const SubmapsReader& read_submaps) {
+  const bool has_drop_list = audit.dropped != DoubtfulIn(audit);
   const std::vector<GroupOutcome> outcomes = Outcomes(audit);
-  ReportContent content = MakeText(input, audit, outcomes);
-  content.options = request.options_text;
-  std::vector<MapPicture> maps = {
-      {"Before; red: doubtful constraints, blue: the others", &audit.state,
-       &audit.state.pose_graph, /*shows_links=*/true}};
-  for (const GroupOutcome& outcome : outcomes) {
-    if (outcome.num_doubtful > 0) continue;
-    maps.front().other_links.push_back({outcome.group->group.reference,
-                                        outcome.group->group.query,
-                                        kKeptColor});
+  Inspection inspection;
+  inspection.title = "Audit of " + FileName(input);
+  inspection.sessions = {{FileName(input)}};
+  inspection.states = {
+      {"before", "Before", "The map as it was", &audit.state.pose_graph}};
+  if (!audit.dropped.empty()) {
+    inspection.states.push_back(
+        {"after", "After",
+         has_drop_list ? "The map without the constraints of the list"
+                       : "The map without the doubtful constraints",
+         &audit.pose_graph});
   }
-  if (audit.num_doubtful > 0) {
-    maps.push_back({"After, without the doubtful constraints", &audit.state,
-                    &audit.pose_graph});
+  AddSubmaps(audit.state, &inspection);
+  JudgeAudit(audit, has_drop_list, &inspection);
+  AddAuditNumbers(audit, &inspection);
+  inspection.tables = {AuditGroupTable(stages, options, outcomes)};
+  for (const AuditedConstraint& audited : audit.constraints) {
+    const Constraint& constraint =
+        audit.state.pose_graph.constraints[audited.constraint];
+    inspection.constraints[audited.constraint] = {
+        constraint.submap, constraint.node,
+        audit.dropped.count(audited.constraint) > 0};
   }
+  inspection.histograms = AuditHistograms(outcomes);
+  inspection.stage_seconds = audit.stage_seconds;
   const absl::Status status =
-      DrawPictures(maps, read_submaps, request.options, &content);
+      DrawInspection(request.options, read_submaps, &inspection);
   if (!status.ok()) return status;
-  return WriteReport(request.directory, content);
+  return WriteInspector(request, inspection);
 }
 
 absl::Status WriteAuditTable(const std::string& path, const Audit& audit) {

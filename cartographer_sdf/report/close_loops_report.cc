@@ -6,45 +6,12 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/reports.h"
 
 namespace cartographer_sdf {
 namespace {
-
-constexpr Color kClosureColor{0.84, 0.15, 0.16, 0.55};
-constexpr Color kRefusedColor{0.58, 0.35, 0.75, 0.8};
-
-std::string ReasonOf(const Closure& closure) {
-  switch (closure.status) {
-    case ClosureStatus::kInGraph:
-      return "in the graph; error " + FormatError(closure.graph_error);
-    case ClosureStatus::kInconsistent:
-      return "closures with more weight contradict it";
-    case ClosureStatus::kUnsupported:
-      return "no other closure supports it, and it is not certain alone";
-    case ClosureStatus::kScansDisagree:
-      return "single scans do not fit at its pose";
-    case ClosureStatus::kOutlier:
-      return "the optimised map contradicts it, by " +
-             FormatError(closure.graph_error);
-    case ClosureStatus::kAlreadyInGraph:
-      return "constraints of the map say the same already";
-    case ClosureStatus::kRedundant:
-      return "better closures tie its submaps often enough";
-    case ClosureStatus::kSelected:
-    case ClosureStatus::kReady:
-    case ClosureStatus::kDetectedOnly:
-    case ClosureStatus::kGone:
-      break;
-  }
-  return ClosureStatusName(closure.status);
-}
-
-int Count(const LoopClosingResult& result, const ClosureStatus status) {
-  return static_cast<int>(std::count_if(
-      result.closed.closures.begin(), result.closed.closures.end(),
-      [status](const Closure& closure) { return closure.status == status; }));
-}
 
 std::vector<double> ResidualsOf(const LoopClosingResult& result,
                                 const PoseGraph& poses) {
@@ -57,7 +24,7 @@ std::vector<double> ResidualsOf(const LoopClosingResult& result,
   return residuals;
 }
 
-std::vector<HistogramPlot> MakeHistograms(const LoopClosingResult& result) {
+std::vector<HistogramPlot> ClosureHistograms(const LoopClosingResult& result) {
   std::vector<double> scores, refused_scores;
   for (const Closure& closure : result.closed.closures) {
     (closure.status == ClosureStatus::kInGraph ? scores : refused_scores)
@@ -73,85 +40,100 @@ std::vector<HistogramPlot> MakeHistograms(const LoopClosingResult& result) {
            {{"after", ResidualsOf(result, result.closed.pose_graph)}}},
           {"Scores of the closures",
            {"score (log-odds of being right)", {}},
-           {{"in the graph", scores}, {"refused", refused_scores}}}};
+           {{"in the graph", scores}, {"not in the graph", refused_scores}}}};
 }
 
-std::vector<std::pair<std::string, std::string>> MakeSummary(
-    const LoopClosingResult& result) {
-  return {
+// The first of them says how it went.
+void JudgeClosing(const LoopClosingResult& result,
+                  Inspection* const inspection) {
+  const auto count = [&result](const ClosureStatus status) {
+    return NumWithStatus(result.closed.closures, status);
+  };
+  const int num_closures = count(ClosureStatus::kInGraph);
+  const int num_known = count(ClosureStatus::kAlreadyInGraph);
+  const int num_outliers = count(ClosureStatus::kOutlier);
+  if (num_closures > 0) {
+    inspection->tone = Tone::kGood;
+    inspection->verdict = absl::StrFormat(
+        "Loops closed: %s, whose walls agree to %.0f cm.",
+        Counted(num_closures, "closure"),
+        100. * WallDistanceInGraph(result.closed.closures).value_or(0.));
+  } else if (num_known > 0) {
+    inspection->verdict = absl::StrFormat(
+        "Nothing to close: the map has constraints already that say the same "
+        "as %s. It is unchanged.",
+        Counted(num_known, "closure"));
+  } else {
+    inspection->tone = Tone::kCaution;
+    inspection->verdict = "No loop closure was found; the map is unchanged.";
+  }
+  if (num_outliers > 0) {
+    inspection->tone = Tone::kCaution;
+    absl::StrAppend(&inspection->verdict, " ", Counted(num_outliers, "place"),
+                    num_outliers == 1 ? " resembles another: look at it."
+                                      : " resemble others: look at them.");
+    inspection->remarks.push_back(
+        absl::StrCat(Counted(num_outliers, "closure"),
+                     " looked right, but the optimised map contradicts ",
+                     num_outliers == 1 ? "it" : "them",
+                     ": the status \"outlier\" in the table."));
+  }
+}
+
+void AddClosingNumbers(const LoopClosingResult& result,
+                       Inspection* const inspection) {
+  auto& numbers = inspection->numbers;
+  numbers = {
       {"Submaps", absl::StrCat(result.state.submaps.size(), ", ",
                                result.num_places, " of them with walls")},
       {"Nodes", absl::StrCat(result.state.pose_graph.nodes.size())},
       {"Pairs with a pose", absl::StrCat(result.num_matches)},
-      {"Accepted by verification", absl::StrCat(result.closed.closures.size())},
-      {"Closures in the graph",
-       absl::StrCat(Count(result, ClosureStatus::kInGraph))},
-      {"Torn submaps", absl::StrCat(result.closed.torn_submaps.size())},
-      {"Inconsistent with others",
-       absl::StrCat(Count(result, ClosureStatus::kInconsistent))},
-      {"Unsupported", absl::StrCat(Count(result, ClosureStatus::kUnsupported))},
-      {"Scans disagree",
-       absl::StrCat(Count(result, ClosureStatus::kScansDisagree))},
-      {"Outliers", absl::StrCat(Count(result, ClosureStatus::kOutlier))},
-      {"Already in the graph",
-       absl::StrCat(Count(result, ClosureStatus::kAlreadyInGraph))},
-      {"Redundant", absl::StrCat(Count(result, ClosureStatus::kRedundant))},
-      {"New constraints",
-       absl::StrCat(result.closed.pose_graph.constraints.size() -
-                    result.state.pose_graph.constraints.size())}};
-}
-
-// The content without pictures.
-ReportContent MakeText(const std::string& input,
-                       const LoopClosingResult& result) {
-  ReportContent content;
-  content.title = "Loop closures of " + FileName(input);
-  content.subtitle =
-      "Found from the shape of free space, without a pose prior.";
-  if (Count(result, ClosureStatus::kInGraph) == 0) {
-    content.warnings.push_back(
-        "No loop closure was found; the map is unchanged.");
+      {"Accepted by verification",
+       absl::StrCat(result.closed.closures.size())}};
+  for (const RowStatus& status : ClosureStatuses(kClosingPath)) {
+    const auto count = std::count_if(
+        result.closed.closures.begin(), result.closed.closures.end(),
+        [&status](const Closure& closure) {
+          return ClosureStatusName(closure.status) == status.name;
+        });
+    if (count > 0) {
+      numbers.emplace_back("Closures " + status.label, absl::StrCat(count));
+    }
   }
-  if (const int num_outliers = Count(result, ClosureStatus::kOutlier);
-      num_outliers > 0) {
-    content.warnings.push_back(absl::StrCat(
-        num_outliers,
-        " closures were rejected as outliers because the optimised map "
-        "contradicts them: some places look alike. Check the map there."));
-  }
-  AddTornSubmaps(result.closed.torn_submaps, &content);
-  content.summary = MakeSummary(result);
-  AddOptimization(result.optimization, result.closed.optimizations, &content);
-  for (const Closure& closure : result.closed.closures) {
-    const bool in_graph = closure.status == ClosureStatus::kInGraph;
-    content.closures.push_back({closure.match,
-                                in_graph,
-                                {},
-                                ReasonOf(closure),
-                                in_graph ? kClosureColor : kRefusedColor,
-                                {}});
-  }
-  SortByInterest(&content.closures);
-  content.histograms = MakeHistograms(result);
-  content.stages = result.stage_seconds;
-  return content;
+  numbers.emplace_back(
+      "New constraints",
+      absl::StrCat(result.closed.pose_graph.constraints.size() -
+                   result.state.pose_graph.constraints.size()));
+  AddDisplacement(inspection);
+  AddOptimization(result.optimization, result.closed.optimizations, inspection);
 }
 
 }  // namespace
 
 absl::Status WriteCloseLoopsReport(const ReportRequest& request,
+                                   const LoopClosingOptions& options,
                                    const std::string& input,
                                    const LoopClosingResult& result,
                                    const SubmapsReader& read_submaps) {
-  ReportContent content = MakeText(input, result);
-  content.options = request.options_text;
-  const absl::Status status = DrawPictures(
-      {{"Before", &result.state, &result.state.pose_graph},
-       {"After, with the closures: red in the graph, purple refused",
-        &result.state, &result.closed.pose_graph, /*shows_links=*/true}},
-      read_submaps, request.options, &content);
+  Inspection inspection;
+  inspection.title = "Loop closures of " + FileName(input);
+  inspection.sessions = {{FileName(input)}};
+  inspection.states = {
+      {"before", "Before", "The map as it was", &result.state.pose_graph},
+      {"after", "After", "The map with its loops closed",
+       &result.closed.pose_graph}};
+  AddSubmaps(result.state, &inspection);
+  JudgeClosing(result, &inspection);
+  AddClosingNumbers(result, &inspection);
+  AddTornSubmaps(result.closed.torn_submaps, &inspection);
+  inspection.tables = {
+      MakeClosureTable(options, result.closed.closures, result.refused)};
+  inspection.histograms = ClosureHistograms(result);
+  inspection.stage_seconds = result.stage_seconds;
+  const absl::Status status =
+      DrawInspection(request.options, read_submaps, &inspection);
   if (!status.ok()) return status;
-  return WriteReport(request.directory, content);
+  return WriteInspector(request, inspection);
 }
 
 }  // namespace cartographer_sdf

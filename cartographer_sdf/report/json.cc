@@ -206,6 +206,23 @@ Json ToJson(const MapQuality& quality) {
           {"wall_distance", quality.wall_distance}};
 }
 
+Json ToJson(const RunDescription& run) {
+  Json inputs = Json::array();
+  for (const InputFile& file : run.inputs) {
+    inputs.push_back({{"flag", file.flag},
+                      {"path", file.path},
+                      {"bytes", ToJson(file.num_bytes)},
+                      {"sha256", file.sha256}});
+  }
+  return {{"program",
+           {{"name", run.program},
+            {"version", run.version},
+            {"commit", run.commit}}},
+          {"command", {{"name", run.command}, {"arguments", run.arguments}}},
+          {"started", run.started},
+          {"inputs", std::move(inputs)}};
+}
+
 Json ToJson(const Localization& result) {
   Json json = AnswerJson(result, "localized", "T_map_query");
   json.update({{"closures", VotesJson(result)},

@@ -18,6 +18,7 @@
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
+#include "cartographer_sdf/report/run_description.h"
 #include "nlohmann/json.hpp"
 
 namespace cartographer_sdf {
@@ -44,6 +45,9 @@ template <typename T>
     return ToJson(*value);
   }
 }
+
+// {program, command, started, inputs}, as in the file of --result.
+[[nodiscard]] Json ToJson(const RunDescription& run);
 
 // The file R.json of relocalize.
 [[nodiscard]] Json ToJson(const MapQuality& quality);

@@ -47,16 +47,59 @@ double StrokeScale(const Picture& picture) {
   return std::max(1., std::max(picture.width(), picture.height()) / 700.);
 }
 
-// The multiples of `step` in [begin, end].
-std::vector<double> Multiples(const double step, const double begin,
-                              const double end) {
-  std::vector<double> multiples;
-  const int64_t last = static_cast<int64_t>(std::floor(end / step));
-  for (int64_t n = static_cast<int64_t>(std::ceil(begin / step)); n <= last;
-       ++n) {
-    multiples.push_back(static_cast<double>(n) * step);
+// Of an indexed picture, from surely free to surely wall.
+constexpr int kNumLevels = 15;
+// CategoryColor repeats.
+constexpr int kNumMapColors = 6;
+
+Rgba ToRgba(const Color& color) {
+  const auto byte = [](const double part) {
+    return static_cast<uint8_t>(std::lround(255. * part));
+  };
+  return {byte(color.red), byte(color.green), byte(color.blue),
+          byte(color.alpha)};
+}
+
+// As Paint() maps the excess to grey.
+int LevelOf(const double excess, const int num_levels) {
+  return static_cast<int>(std::lround(
+      std::clamp(0.5 + kContrast * excess, 0., 1.) * (num_levels - 1)));
+}
+
+IndexedPicture BlankPicture(const MapPainter& map) {
+  IndexedPicture picture;
+  picture.width = map.size().x();
+  picture.height = map.size().y();
+  picture.pixels.reserve(static_cast<size_t>(picture.width) *
+                         static_cast<size_t>(picture.height));
+  return picture;
+}
+
+// What several maps say of a pixel.
+struct OverlaidPixel {
+  bool is_known = false, is_free = false, is_wall = false;
+  // The map that is surest of a wall.
+  size_t map = 0;
+  double excess = 0.;
+
+  [[nodiscard]] bool IsInConflict() const { return is_free && is_wall; }
+};
+
+OverlaidPixel OverlayAt(const std::vector<MapPainter>& maps, const int x,
+                        const int y) {
+  OverlaidPixel pixel;
+  for (size_t k = 0; k < maps.size(); ++k) {
+    const std::optional<double> excess = maps[k].ExcessAt(x, y);
+    if (!excess) continue;
+    pixel.is_known = true;
+    pixel.is_free |= *excess < -kSureExcess;
+    pixel.is_wall |= *excess > kSureExcess;
+    if (*excess > pixel.excess) {
+      pixel.excess = *excess;
+      pixel.map = k;
+    }
   }
-  return multiples;
+  return pixel;
 }
 
 constexpr int kMaxPicturePixels = 16384;
@@ -208,32 +251,64 @@ Picture MapPainter::Paint() const {
   return picture;
 }
 
-Picture PaintOverlaid(const std::vector<MapPainter>& maps) {
-  CHECK(!maps.empty());
-  Picture picture = maps.front().UnobservedPicture();
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      bool is_known = false, is_free = false, is_wall = false;
-      for (const MapPainter& map : maps) {
-        const std::optional<double> excess = map.ExcessAt(x, y);
-        if (!excess) continue;
-        is_known = true;
-        is_free |= *excess < -kSureExcess;
-        is_wall |= *excess > kSureExcess;
-      }
-      if (!is_known) continue;
-      const bool is_conflict = is_free && is_wall;
-      picture.BlendPixel(x, y, is_conflict ? kConflict : kWhite);
-      for (size_t k = 0; k < maps.size() && !is_conflict; ++k) {
-        const std::optional<double> excess = maps[k].ExcessAt(x, y);
-        if (!excess || *excess <= 0.) continue;
-        Color color = CategoryColor(static_cast<int>(k));
-        color.alpha = std::min(1., kContrast * *excess);
-        picture.BlendPixel(x, y, color);
-      }
+std::string IndexedPicture::EncodePng() const {
+  return EncodeIndexedPng(width, height, palette, pixels);
+}
+
+IndexedPicture PaintIndexed(const MapPainter& map, const Color& wall) {
+  IndexedPicture picture = BlankPicture(map);
+  picture.palette.push_back({0, 0, 0, 0});
+  for (int level = 0; level < kNumLevels; ++level) {
+    picture.palette.push_back(
+        ToRgba(Mix(kWhite, wall, level / (kNumLevels - 1.))));
+  }
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const std::optional<double> excess = map.ExcessAt(x, y);
+      picture.pixels.push_back(
+          excess ? static_cast<uint8_t>(1 + LevelOf(*excess, kNumLevels)) : 0);
     }
   }
   return picture;
+}
+
+IndexedPicture PaintOverlaid(const std::vector<MapPainter>& maps) {
+  CHECK(!maps.empty());
+  IndexedPicture picture = BlankPicture(maps.front());
+  picture.palette = {ToRgba(kUnobserved), ToRgba(kConflict)};
+  for (int k = 0; k < kNumMapColors; ++k) {
+    for (int level = 0; level < kNumLevels; ++level) {
+      picture.palette.push_back(
+          ToRgba(Mix(kWhite, CategoryColor(k), level / (kNumLevels - 1.))));
+    }
+  }
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const OverlaidPixel pixel = OverlayAt(maps, x, y);
+      const int map = static_cast<int>(pixel.map) % kNumMapColors;
+      // Uncertain walls are paler; the first level of any colour is white.
+      const int level = static_cast<int>(std::lround(
+          std::min(1., kContrast * pixel.excess) * (kNumLevels - 1)));
+      picture.pixels.push_back(static_cast<uint8_t>(
+          !pixel.is_known        ? 0
+          : pixel.IsInConflict() ? 1
+                                 : 2 + map * kNumLevels + level));
+    }
+  }
+  return picture;
+}
+
+double ConflictShare(const std::vector<MapPainter>& maps) {
+  CHECK(!maps.empty());
+  int num_walls = 0, num_conflicts = 0;
+  for (int y = 0; y < maps.front().size().y(); ++y) {
+    for (int x = 0; x < maps.front().size().x(); ++x) {
+      const OverlaidPixel pixel = OverlayAt(maps, x, y);
+      num_walls += pixel.is_wall;
+      num_conflicts += pixel.IsInConflict();
+    }
+  }
+  return num_walls > 0 ? static_cast<double>(num_conflicts) / num_walls : 0.;
 }
 
 void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
@@ -248,41 +323,6 @@ void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
   picture->DrawPolyline(pixels, 1.2 * scale, color);
   picture->DrawCircle(pixels.front(), 3. * scale, kWhite, color);
   picture->DrawCircle(pixels.back(), 3. * scale, color, kWhite);
-}
-
-void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-              const PixelFrame& frame, const Color& color,
-              Picture* const picture) {
-  if (!IsDrawable(from) || !IsDrawable(to)) return;
-  const Eigen::Vector2d a = frame.ToPixels(from);
-  const Eigen::Vector2d b = frame.ToPixels(to);
-  const double scale = StrokeScale(*picture);
-  picture->DrawPolyline({a, b}, 1.4 * scale, color);
-  picture->DrawCircle(a, 2. * scale, color, color);
-  picture->DrawCircle(b, 2. * scale, color, color);
-}
-
-void DrawMetricGrid(const PixelFrame& frame, Picture* const picture) {
-  const double scale = StrokeScale(*picture);
-  const double step = RoundStep(80. * scale / frame.pixels_per_meter);
-  const Color line{0.2, 0.4, 0.7, 0.25};
-  const Eigen::Vector2d size =
-      Eigen::Vector2d(picture->width(), picture->height());
-  const Eigen::Vector2d extent = size / frame.pixels_per_meter;
-  for (const double x :
-       Multiples(step, frame.top_left.x(), frame.top_left.x() + extent.x())) {
-    const double pixel = frame.ToPixels({x, frame.top_left.y()}).x();
-    picture->DrawPolyline({{pixel, 0.}, {pixel, size.y()}}, 1., line);
-    picture->DrawText({pixel, 10. * scale}, absl::StrFormat("%g", x),
-                      9. * scale, kInk, Picture::Anchor::kCentre);
-  }
-  for (const double y :
-       Multiples(step, frame.top_left.y() - extent.y(), frame.top_left.y())) {
-    const double pixel = frame.ToPixels({frame.top_left.x(), y}).y();
-    picture->DrawPolyline({{0., pixel}, {size.x(), pixel}}, 1., line);
-    picture->DrawText({3., pixel + 3. * scale}, absl::StrFormat("%g", y),
-                      9. * scale, kInk, Picture::Anchor::kLeft);
-  }
 }
 
 void DrawScaleBar(const PixelFrame& frame, Picture* const picture) {

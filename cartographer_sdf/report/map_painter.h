@@ -10,12 +10,15 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/report/indexed_png.h"
 #include "cartographer_sdf/report/picture.h"
 
 namespace cartographer_sdf {
@@ -70,22 +73,35 @@ class MapPainter {
   double finest_resolution_ = 0.;
 };
 
+// A picture of few colours.
+struct IndexedPicture {
+  int width = 0;
+  int height = 0;
+  std::vector<Rgba> palette;
+  std::vector<uint8_t> pixels;  // row by row, from the top
+
+  [[nodiscard]] std::string EncodePng() const;
+};
+
+// As Paint(), with walls in the given colour, and transparent where nothing is
+// known.
+[[nodiscard]] IndexedPicture PaintIndexed(const MapPainter& map,
+                                          const Color& wall);
+
 // Several maps in one picture. The painters are made of the same grids, and
 // each has the submaps of one map. Walls have the colour of their map's index
-// (CategoryColor), free space of any map is white, and walls of one map in the
-// free space of another are red.
-[[nodiscard]] Picture PaintOverlaid(const std::vector<MapPainter>& maps);
+// (CategoryColor), free space of any map is white, walls of one map in the free
+// space of another are red, and what no map knows is grey.
+[[nodiscard]] IndexedPicture PaintOverlaid(const std::vector<MapPainter>& maps);
+
+// Of the pixels with a wall of any map, the share that is free in another.
+[[nodiscard]] double ConflictShare(const std::vector<MapPainter>& maps);
 
 // These draw on a map's picture. Positions are in the frame of `frame` [m];
 // absurd ones are left out.
 void DrawTrajectory(const std::vector<Eigen::Vector2d>& positions,
                     const PixelFrame& frame, const Color& color,
                     Picture* picture);
-// A dot at both ends.
-void DrawLink(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
-              const PixelFrame& frame, const Color& color, Picture* picture);
-// Fine lines at round coordinates [m], which are written at the border.
-void DrawMetricGrid(const PixelFrame& frame, Picture* picture);
 // A scale bar at the lower left, with a round length [m].
 void DrawScaleBar(const PixelFrame& frame, Picture* picture);
 

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The pages of --report, the table of audit, and the parts that pages about
-// maps share: pictures and lines of the summary.
+// The pages of --report, and the table of audit.
 
 #ifndef CARTOGRAPHER_SDF_REPORT_REPORTS_H_
 #define CARTOGRAPHER_SDF_REPORT_REPORTS_H_
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,80 +19,47 @@
 #include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
-#include "cartographer_sdf/report/html_report.h"
-#include "cartographer_sdf/report/map_painter.h"
-#include "cartographer_sdf/report/picture.h"
+#include "cartographer_sdf/report/inspection.h"
+#include "cartographer_sdf/report/inspection_maps.h"
+#include "cartographer_sdf/report/inspector_page.h"
 #include "cartographer_sdf/report/report_options.h"
 
 namespace cartographer_sdf {
 
-// A line between the robot's positions in two submaps.
-struct SubmapLink {
-  SubmapId from;
-  SubmapId to;
-  Color color;
-};
-
-// A whole map with the driven paths: the submaps of `state` at their poses in
-// `pose_graph`. Both must outlive the MapPicture.
-struct MapPicture {
-  std::string caption;
-  const MapState* state = nullptr;
-  const PoseGraph* pose_graph = nullptr;
-  // Whether to draw the links of the page's closures, the first one last, above
-  // `other_links`.
-  bool shows_links = false;
-  std::vector<SubmapLink> other_links = {};
-  // If several maps are overlaid, each in its colour: the map that each
-  // trajectory belongs to. Empty for a single map.
-  std::map<int, int> layers = {};
-};
-
-// Reads the map that a report is about and calls back for each of its submaps,
-// as ReadMap() and PrepareMap() do.
-using SubmapsReader = std::function<absl::Status(const SubmapCallback&)>;
-
-// The submaps at their poses in `pose_graph`.
-[[nodiscard]] std::vector<PlacedGrid> PlaceGrids(const MapState& state,
-                                                 const PoseGraph& pose_graph);
-
-// The positions of each trajectory's nodes, in order.
-[[nodiscard]] std::map<int, std::vector<Eigen::Vector2d>> PathsOf(
-    const PoseGraph& pose_graph);
-
-// Adds the pictures of maps and, up to the number in the options, those of the
-// page's closures. Calls the reader once.
-[[nodiscard]] absl::Status DrawPictures(const std::vector<MapPicture>& maps,
-                                        const SubmapsReader& read_submaps,
-                                        const ReportOptions& options,
-                                        ReportContent* content);
-
-// Sorts closures by how much they deserve a look: refused ones first, then by
-// increasing certainty.
-void SortByInterest(std::vector<ReportedClosure>* closures);
-
 [[nodiscard]] std::string FileName(const std::string& path);
 [[nodiscard]] std::string FormatPose(const Rigid2& pose);
-[[nodiscard]] std::string FormatError(const ConstraintError& error);
+// "1 closure", "3 closures".
+[[nodiscard]] std::string Counted(size_t count, const std::string& noun);
 
-// Adds the page's text about the last optimisation, if there is one.
+// --- What several pages add to an inspection. ---
+
+// All submaps of a map, of one session.
+void AddSubmaps(const MapState& state, Inspection* inspection);
+// How far the map moved.
+void AddDisplacement(Inspection* inspection);
+// The last optimisation, if there is one, and a remark if it did not converge.
 void AddOptimization(const OptimizationOptions& options,
                      const std::vector<OptimizationSummary>& summaries,
-                     ReportContent* content);
+                     Inspection* inspection);
+// A remark, and the flaw of the submap.
 void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
-                    ReportContent* content);
+                    Inspection* inspection);
 
 // --- The pages, in request.directory. ---
 
-// The map before and after, every closure with its evidence, residuals, and the
-// durations of the stages. Calls the reader once. `input` is the map's name.
+// The map before and after, every closure with its evidence, and the best of
+// the matches that were refused. Calls the reader once. `input` is the map's
+// name; the options are those in force.
 [[nodiscard]] absl::Status WriteCloseLoopsReport(
-    const ReportRequest& request, const std::string& input,
-    const LoopClosingResult& result, const SubmapsReader& read_submaps);
+    const ReportRequest& request, const LoopClosingOptions& options,
+    const std::string& input, const LoopClosingResult& result,
+    const SubmapsReader& read_submaps);
 
-// The map before and after, and each group with a doubtful constraint, drawn at
-// the constraints' own pose, with its evidence. Calls the reader once.
+// The map before and after, and each group of constraints at its own pose, with
+// its evidence. Calls the reader once.
 [[nodiscard]] absl::Status WriteAuditReport(const ReportRequest& request,
+                                            const LoopClosingOptions& stages,
+                                            const AuditOptions& options,
                                             const std::string& input,
                                             const Audit& audit,
                                             const SubmapsReader& read_submaps);
@@ -107,24 +72,26 @@ void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
 [[nodiscard]] absl::Status WriteAuditTable(const std::string& path,
                                            const Audit& audit);
 
-// Both maps, overlaid where the query was found or fits best; the matches, and
-// their contradictions.
+// Both maps, overlaid where the query was found or fits best; every placement
+// with its probability; the matches, and their contradictions.
 [[nodiscard]] absl::Status WriteRelocalizationReport(
-    const ReportRequest& request, const Session& map, const Session& query,
-    const Localization& result, const ProgressCallback& on_progress);
+    const ReportRequest& request, const LoopClosingOptions& stages,
+    const LocalizationOptions& options, const Session& map,
+    const Session& query, const Localization& result,
+    const ProgressCallback& on_progress);
 
 // The map with every candidate as an arrow with its probability, and the scans
 // at the best ones.
-[[nodiscard]] absl::Status WriteScanReport(const ReportRequest& request,
-                                           const std::string& map_name,
-                                           const std::string& scan_name,
-                                           const OccupancyGrid& grid,
-                                           const std::vector<RobotScan>& scans,
-                                           const ScanLocalization& result);
+[[nodiscard]] absl::Status WriteScanReport(
+    const ReportRequest& request, const ScanLocalizationOptions& options,
+    const std::string& map_name, const std::string& scan_name,
+    const OccupancyGrid& grid, const std::vector<RobotScan>& scans,
+    const ScanLocalization& result);
 
+// The sessions where they were placed, and as they were optimised together.
 [[nodiscard]] absl::Status WriteMergingReport(
-    const ReportRequest& request, const MergingResult& result,
-    const ProgressCallback& on_progress);
+    const ReportRequest& request, const LoopClosingOptions& stages,
+    const MergingResult& result, const ProgressCallback& on_progress);
 
 }  // namespace cartographer_sdf
 

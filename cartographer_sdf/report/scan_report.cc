@@ -14,189 +14,165 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr size_t kNumPictures = 4;
-// Less probable candidates are not drawn in the picture of the map, but for the
-// best one.
-constexpr double kMinDrawnProbability = 0.01;
-constexpr double kArrowLength = 2.;  // [m]
-constexpr double kScanMarginMeters = 1.;
+constexpr size_t kMaxEchoes = 1500;
+constexpr double kScanDegrees = 180. / M_PI;  // of a radian
+// Less probable candidates are in the table only.
+constexpr double kMinNamedProbability = 0.01;
+// The map of a scan has no submaps: it is one.
+constexpr SubmapId kWholeMap{0, 0};
 
-// Of a whole map, or of what a scan sees at a pose.
-MapPainter PaintMap(const OccupancyGrid& grid, const int max_pixels) {
-  MapPainter painter({{grid.geometry, Rigid2()}}, max_pixels);
-  painter.AddSubmap(grid, Rigid2());
-  return painter;
-}
-
-std::vector<Eigen::Vector2d> EchoesIn(const std::vector<RobotScan>& scans,
-                                      const Rigid2& T_map_robot) {
+std::vector<Eigen::Vector2d> EchoesOf(const std::vector<RobotScan>& scans) {
   std::vector<Eigen::Vector2d> echoes;
   for (const RobotScan& scan : scans) {
-    const Rigid2 T_map_sensor = T_map_robot * scan.T_robot_sensor;
     for (const Eigen::Vector2f& point : scan.scan.returns) {
       const Eigen::Vector2d p_sensor = point.cast<double>();
-      if (p_sensor.allFinite()) echoes.push_back(T_map_sensor * p_sensor);
+      if (p_sensor.allFinite()) {
+        echoes.push_back(scan.T_robot_sensor * p_sensor);
+      }
     }
   }
-  return echoes;
-}
-
-void DrawArrow(const Rigid2& T_map_robot, const double length,
-               const PixelFrame& frame, const Color& color,
-               Picture* const picture) {
-  const auto at = [&](const double x, const double y) {
-    return frame.ToPixels(T_map_robot * Eigen::Vector2d(x, y));
-  };
-  const double width =
-      std::max(1.5, 0.003 * std::max(picture->width(), picture->height()));
-  picture->DrawPolyline({at(0., 0.), at(length, 0.)}, width, color);
-  picture->DrawPolyline({at(0.7 * length, 0.2 * length), at(length, 0.),
-                         at(0.7 * length, -0.2 * length)},
-                        width, color);
-  picture->DrawCircle(at(0., 0.), 1.5 * width, color, kWhite);
+  const size_t stride = 1 + echoes.size() / kMaxEchoes;
+  std::vector<Eigen::Vector2d> kept;
+  for (size_t k = 0; k < echoes.size(); k += stride) kept.push_back(echoes[k]);
+  return kept;
 }
 
 std::string Percent(const double probability) {
-  return probability < 0.1 ? absl::StrFormat("%.1f %%", 100. * probability)
-                           : absl::StrFormat("%.0f %%", 100. * probability);
+  return absl::StrFormat("%.*f %%",
+                         probability < 0.1 || probability > 0.99 ? 1 : 0,
+                         100. * probability);
 }
 
-void DrawEchoes(const std::vector<Eigen::Vector2d>& echoes,
-                const PixelFrame& frame, const Color& color,
-                Picture* const picture) {
-  for (const Eigen::Vector2d& echo : echoes) {
-    const Eigen::Vector2d pixel = frame.ToPixels(echo);
-    if (!(pixel.array().abs() < 1e5).all()) continue;
-    picture->DrawCircle(pixel, 1.2, color, color);
+void JudgeScan(const std::string& map_name, const ScanLocalization& result,
+               Inspection* const inspection) {
+  if (result.verdict == LocalizationVerdict::kLocalized) {
+    const ScanCandidate& best = result.candidates.front();
+    inspection->tone = Tone::kGood;
+    inspection->verdict = absl::StrFormat(
+        "Localised: the robot stands at %s in %s, with a probability of %s.",
+        FormatPose(best.T_map_robot), map_name, Percent(best.probability));
+  } else {
+    inspection->tone = Tone::kCaution;
+    inspection->verdict =
+        absl::StrCat("Not localised (", LocalizationVerdictName(result.verdict),
+                     "): ", result.reason, ".");
   }
-}
-
-// All candidates as arrows with their probability, and the scan at the best.
-Picture DrawCandidates(const MapPainter& painter,
-                       const std::vector<RobotScan>& scans,
-                       const ScanLocalization& result) {
-  Picture picture = painter.Paint();
-  const PixelFrame& frame = painter.frame();
-  DrawMetricGrid(frame, &picture);
-  const double text_size =
-      std::max(10., 0.014 * std::max(picture.width(), picture.height()));
-  for (size_t k = result.candidates.size(); k-- > 0;) {
-    const ScanCandidate& candidate = result.candidates[k];
-    if (k > 0 && candidate.probability < kMinDrawnProbability) continue;
-    const Color color = CategoryColor(static_cast<int>(k));
-    if (k == 0) {
-      DrawEchoes(EchoesIn(scans, candidate.T_map_robot), frame, color,
-                 &picture);
-    }
-    DrawArrow(candidate.T_map_robot, kArrowLength, frame, color, &picture);
-    picture.DrawText(frame.ToPixels(candidate.T_map_robot.translation()) +
-                         Eigen::Vector2d(0.6, -0.6) * text_size,
-                     Percent(candidate.probability), text_size, color,
-                     Picture::Anchor::kLeft);
-  }
-  DrawScaleBar(frame, &picture);
-  return picture;
-}
-
-// What surrounds a candidate, with the scan at its pose.
-Picture DrawScanAt(const OccupancyGrid& grid,
-                   const std::vector<RobotScan>& scans,
-                   const ScanCandidate& candidate, const Color& color,
-                   const int max_pixels) {
-  const std::vector<Eigen::Vector2d> echoes =
-      EchoesIn(scans, candidate.T_map_robot);
-  Eigen::AlignedBox2d bounds(candidate.T_map_robot.translation());
-  for (const Eigen::Vector2d& echo : echoes) bounds.extend(echo);
-  // A stray echo does not make the rest tiny.
-  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(30.);
-  bounds = bounds.intersection(Eigen::AlignedBox2d(
-      Eigen::Vector2d(candidate.T_map_robot.translation() - reach),
-      Eigen::Vector2d(candidate.T_map_robot.translation() + reach)));
-  CellGeometry shown;
-  shown.resolution = grid.geometry.resolution;
-  shown.size =
-      ((bounds.sizes().array() + 2. * kScanMarginMeters) / shown.resolution)
-          .ceil()
-          .cast<int>();
-  shown.T_submap_grid =
-      Rigid2(Eigen::Vector2d(bounds.min().array() - kScanMarginMeters), 0.);
-  MapPainter painter({{shown, Rigid2()}}, max_pixels);
-  painter.AddSubmap(grid, Rigid2());
-  Picture picture = painter.Paint();
-  DrawEchoes(echoes, painter.frame(), color, &picture);
-  DrawArrow(candidate.T_map_robot, 0.5 * kArrowLength, painter.frame(), color,
-            &picture);
-  DrawScaleBar(painter.frame(), &picture);
-  return picture;
-}
-
-std::vector<std::pair<std::string, std::string>> ScanSummary(
-    const ScanLocalization& result) {
-  std::vector<std::pair<std::string, std::string>> summary = {
-      {"Answer", LocalizationVerdictName(result.verdict)},
-      {"Reason", result.reason}};
+  inspection->numbers = {{"Answer", LocalizationVerdictName(result.verdict)},
+                         {"Reason", result.reason}};
   if (result.elsewhere_probability) {
-    summary.emplace_back(
+    inspection->numbers.emplace_back(
         "Probability of being elsewhere",
         absl::StrFormat("%.4f", *result.elsewhere_probability));
   }
   for (size_t k = 0; k < result.candidates.size(); ++k) {
     const ScanCandidate& candidate = result.candidates[k];
-    if (k > 0 && candidate.probability < kMinDrawnProbability) break;
-    summary.emplace_back(
+    if (k > 0 && candidate.probability < kMinNamedProbability) break;
+    inspection->numbers.emplace_back(
         absl::StrCat("Candidate ", k + 1),
-        absl::StrFormat(
-            "probability %.4f at %s; standard deviation %.2f m in x, %.2f m "
-            "in y, %.1f degrees; beams: %.0f %% at walls, %.0f %% through "
-            "walls, %.0f %% in free space, %.0f %% in unknown space",
-            candidate.probability, FormatPose(candidate.T_map_robot),
-            std::sqrt(candidate.covariance(0, 0)),
-            std::sqrt(candidate.covariance(1, 1)),
-            std::sqrt(candidate.covariance(2, 2)) * 180. / M_PI,
-            100. * candidate.evidence.at_wall,
-            100. * candidate.evidence.through_wall,
-            100. * candidate.evidence.in_free_space,
-            100. * candidate.evidence.in_unknown));
+        absl::StrFormat("probability %.4f at %s", candidate.probability,
+                        FormatPose(candidate.T_map_robot)));
   }
-  return summary;
+}
+
+std::vector<Measure> CandidateMeasures(const ScanLocalizationOptions& options) {
+  return {
+      {"probability", "probability", "%", 2,
+       "Of standing there; the probabilities of all candidates and of being "
+       "elsewhere sum to 100 %.",
+       true, Measure::Bound::kAtLeast, 100. * options.min_probability,
+       "scan_localization.min_probability"},
+      {"beams", "beams", "", 0, "That are compared, of one per degree.", false,
+       Measure::Bound::kAtLeast, static_cast<double>(options.min_num_beams),
+       "scan_localization.min_num_beams"},
+      {"at_wall", "at walls", "%", 0, "Echoes at a wall of the map.", true},
+      {"through_wall", "through walls", "%", 0,
+       "Beams that cross a wall of the map: it is gone, or the pose is "
+       "wrong.",
+       true},
+      {"in_free_space", "in free space", "%", 0,
+       "Echoes in free space: something that is not in the map.", true},
+      {"in_unknown", "in unknown space", "%", 0,
+       "Beams that end where the map is unknown."},
+      {"fit", "fit", "", 3,
+       "How well the beams fit, on average: 1 for an echo on a wall, .6 at "
+       "7 cm."},
+      {"x_deviation", "standard deviation of x", "m", 3,
+       "Large along what the scan does not hold."},
+      {"y_deviation", "standard deviation of y", "m", 3,
+       "Large along what the scan does not hold."},
+      {"yaw_deviation", "standard deviation of the heading", "deg", 2, ""}};
+}
+
+InspectedRow RowOfCandidate(const ScanCandidate& candidate) {
+  const BeamEvidence& evidence = candidate.evidence;
+  InspectedRow row;
+  row.T_map_robot = candidate.T_map_robot;
+  row.values = {100. * candidate.probability,
+                static_cast<double>(evidence.num_beams),
+                100. * evidence.at_wall,
+                100. * evidence.through_wall,
+                100. * evidence.in_free_space,
+                100. * evidence.in_unknown,
+                evidence.fit,
+                std::sqrt(candidate.covariance(0, 0)),
+                std::sqrt(candidate.covariance(1, 1)),
+                kScanDegrees * std::sqrt(candidate.covariance(2, 2))};
+  return row;
+}
+
+InspectedTable ScanCandidateTable(const ScanLocalizationOptions& options,
+                                  const ScanLocalization& result) {
+  const std::string option = "scan_localization.min_probability";
+  InspectedTable table{
+      "candidates",
+      "Candidates",
+      "Arrows show where the robot may stand; dots are the echoes of its "
+      "scan.",
+      CandidateMeasures(options),
+      {{"answer", "the answer", Tone::kGood, "It is certain.", ""},
+       {"best", "best, but refused", Tone::kCaution,
+        "The best of them, which is not certain.", option},
+       {"other", "other", Tone::kNeutral, "Less probable than the best.",
+        option}}};
+  const bool is_certain = result.verdict == LocalizationVerdict::kLocalized;
+  for (const ScanCandidate& candidate : result.candidates) {
+    InspectedRow row = RowOfCandidate(candidate);
+    row.status = !table.rows.empty() ? "other" : is_certain ? "answer" : "best";
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 }  // namespace
 
 absl::Status WriteScanReport(const ReportRequest& request,
+                             const ScanLocalizationOptions& options,
                              const std::string& map_name,
                              const std::string& scan_name,
                              const OccupancyGrid& grid,
                              const std::vector<RobotScan>& scans,
                              const ScanLocalization& result) {
-  ReportContent content;
-  content.title =
+  Inspection inspection;
+  inspection.title =
       absl::StrCat("Where in ", map_name, " was ", scan_name, " taken?");
-  content.subtitle =
-      "Found by comparing the scan with the whole map, without "
-      "a pose prior.";
-  content.summary = ScanSummary(result);
-  if (result.verdict != LocalizationVerdict::kLocalized) {
-    content.warnings.push_back("Not localized: " + result.reason);
-  }
-  content.stages = result.stage_seconds;
-  content.options = request.options_text;
-  const MapPainter painter = PaintMap(grid, request.options.map_picture_pixels);
-  content.maps.push_back(
-      {"The map with all candidates of 1 % and more, and the scan at the best",
-       DrawCandidates(painter, scans, result).EncodePng()});
-  for (size_t k = 0; k < std::min(kNumPictures, result.candidates.size());
-       ++k) {
-    const ScanCandidate& candidate = result.candidates[k];
-    if (k > 0 && candidate.probability < kMinDrawnProbability) break;
-    content.maps.push_back(
-        {absl::StrCat("The scan at candidate ", k + 1, ", ",
-                      Percent(candidate.probability)),
-         DrawScanAt(grid, scans, candidate, CategoryColor(static_cast<int>(k)),
-                    request.options.closure_picture_pixels)
-             .EncodePng()});
-  }
-  return WriteReport(request.directory, content);
+  JudgeScan(map_name, result, &inspection);
+  PoseGraph pose_graph;
+  pose_graph.submap_poses[kWholeMap] = Rigid2();
+  inspection.sessions = {{map_name}};
+  inspection.states = {{"map", "Map", "The map", &pose_graph}};
+  inspection.submaps[kWholeMap] = {grid.geometry, kWholeMap};
+  inspection.tables = {ScanCandidateTable(options, result)};
+  inspection.echoes = EchoesOf(scans);
+  inspection.stage_seconds = result.stage_seconds;
+  const absl::Status status = DrawInspection(
+      request.options,
+      [&grid](const SubmapCallback& on_submap) {
+        on_submap(kWholeMap, {}, grid);
+        return absl::OkStatus();
+      },
+      &inspection);
+  if (!status.ok()) return status;
+  return WriteInspector(request, inspection);
 }
 
 }  // namespace cartographer_sdf

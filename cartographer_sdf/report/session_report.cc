@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -8,70 +9,44 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/reports.h"
 
 namespace cartographer_sdf {
 namespace {
 
-constexpr Color kAgreeingColor{0., 0.5, 0.3, 0.6};
-constexpr Color kRivalColor{0.58, 0.35, 0.75, 0.8};
-constexpr Color kContradictingColor{0.9, 0.1, 0.1, 0.9};
+constexpr char kPlacementPath[] = "localization.placement";
+constexpr size_t kMaxCandidates = 50;
 
-ReportedClosure Reported(const Match& match, const bool accepted,
-                         const std::string& reason, const Color& color) {
-  return {match, accepted, {}, reason, color, {}};
-}
-
-std::vector<ReportedClosure> ClosuresOf(const Localization& result) {
-  std::vector<ReportedClosure> closures;
-  for (const Match& match : result.contradictions) {
-    closures.push_back(Reported(
-        match, false, "walls in free space at this pose", kContradictingColor));
-  }
-  for (size_t k = 0; k < result.placements.size(); ++k) {
-    const Placement& placement = result.placements[k];
-    const std::string reason =
-        k == 0 ? "agrees with the best placement"
-        : placement.is_rival
-            ? absl::StrCat("supports another placement, number ", k + 1)
-            : "neither supports nor excludes the best placement";
-    for (const size_t vote : placement.votes) {
-      closures.push_back(Reported(
-          result.matches[vote], k == 0 && result.T_map_query.has_value(),
-          reason, k == 0 ? kAgreeingColor : kRivalColor));
-    }
-  }
-  SortByInterest(&closures);
-  return closures;
-}
-
-std::vector<ReportedClosure> ClosuresOf(const MergingResult& result) {
-  std::vector<ReportedClosure> closures;
-  for (const Match& match : result.contradictions) {
-    closures.push_back(Reported(match, false,
-                                "walls in free space in the merged map",
-                                kContradictingColor));
-  }
-  for (const Closure& closure : result.closed.closures) {
-    const bool in_graph = closure.status == ClosureStatus::kInGraph;
-    closures.push_back(Reported(
-        closure.match, in_graph,
-        in_graph ? "in the graph; error " + FormatError(closure.graph_error)
-                 : ClosureStatusName(closure.status),
-        in_graph ? kAgreeingColor : kRivalColor));
-  }
-  SortByInterest(&closures);
-  return closures;
-}
-
-std::map<int, int> LayersOf(const std::vector<MapPart>& parts) {
-  std::map<int, int> layers;
+// The session of each trajectory in the picture.
+std::map<int, size_t> SessionsOf(const std::vector<MapPart>& parts) {
+  std::map<int, size_t> sessions;
   for (size_t k = 0; k < parts.size(); ++k) {
     for (const auto& [trajectory, number] : parts[k].trajectories) {
-      layers[number] = static_cast<int>(k);
+      sessions[number] = k;
     }
   }
-  return layers;
+  return sessions;
+}
+
+// Adds the submaps under the numbers of the parts. `shows_new_ids`: as those of
+// the files are, or as the parts have them.
+void AddSubmapsOfParts(const MapState& state, const std::vector<MapPart>& parts,
+                       const bool shows_new_ids, Inspection* const inspection) {
+  std::map<int, int> numbers_in_file;
+  for (const MapPart& part : parts) {
+    for (const auto& [trajectory, number] : part.trajectories) {
+      numbers_in_file[number] = trajectory;
+    }
+  }
+  const std::map<int, size_t> sessions = SessionsOf(parts);
+  for (const auto& [id, submap] : state.submaps) {
+    const SubmapId shown =
+        shows_new_ids ? id
+                      : SubmapId{numbers_in_file.at(id.trajectory), id.index};
+    inspection->submaps[id] = {submap.geometry, shown,
+                               sessions.at(id.trajectory)};
+  }
 }
 
 // Calls back with the submaps of a file, except for some, under their new ids.
@@ -94,68 +69,6 @@ std::string FormatScore(const std::optional<double>& score) {
   return score ? absl::StrFormat("%.1f", *score) : "none";
 }
 
-std::vector<std::pair<std::string, std::string>> LocalizationSummary(
-    const Session& map, const Session& query, const Localization& result) {
-  return {
-      {"Answer",
-       result.T_map_query
-           ? FormatPose(*result.T_map_query)
-           : absl::StrCat("none: ", LocalizationVerdictName(result.verdict))},
-      {"Reason", result.reason},
-      {"Score (log-odds)", FormatScore(result.score)},
-      {"Score of the runner-up", FormatScore(result.runner_up_score)},
-      {"Agreeing matches", absl::StrCat(result.num_agreeing)},
-      {"Contradicting matches", absl::StrCat(result.num_contradicting)},
-      {"Submaps of the map", absl::StrCat(map.map.places.size())},
-      {"Submaps of the query", absl::StrCat(query.map.places.size())}};
-}
-
-// The outcome of each session and of each pair of sessions.
-void AddMergingSummary(const MergingResult& result,
-                       const std::vector<std::string>& names,
-                       ReportContent* const content) {
-  for (size_t k = 0; k < result.sessions.size(); ++k) {
-    const MergedSession& session = result.sessions[k];
-    content->summary.emplace_back(
-        absl::StrCat(k + 1, ": ", names[k]),
-        session.T_merged_session
-            ? "placed at " + FormatPose(*session.T_merged_session)
-            : "not in the merged map: " + session.left_out);
-    if (!session.T_merged_session) {
-      content->warnings.push_back(absl::StrCat(
-          names[k], " is not in the merged map: ", session.left_out, "."));
-    }
-  }
-  for (const SessionLink& link : result.links) {
-    content->summary.emplace_back(
-        absl::StrCat(link.first + 1, " and ", link.second + 1),
-        absl::StrCat(LocalizationVerdictName(link.localization.verdict),
-                     ", score ", FormatScore(link.localization.score),
-                     ", runner-up ",
-                     FormatScore(link.localization.runner_up_score), ", ",
-                     link.localization.num_agreeing, " matches agree, ",
-                     link.localization.num_contradicting,
-                     " contradict: ", link.localization.reason));
-  }
-  content->summary.emplace_back("Overlapping pairs of submaps",
-                                absl::StrCat(result.num_overlapping));
-  content->summary.emplace_back("Pairs that contradict each other",
-                                absl::StrCat(result.contradictions.size()));
-  if (!result.refusal.empty()) {
-    content->warnings.push_back("Refused: " + result.refusal);
-  }
-  AddTornSubmaps(result.closed.torn_submaps, content);
-}
-
-const char* CaptionOf(const Localization& result) {
-  return result.T_map_query ? "The map, overlaid with the query; red where "
-                              "walls of one stand in the other's free space"
-         : result.placements.empty()
-             ? "The map; no placement of the query was found"
-             : "The map, overlaid with the query at its best but refused "
-               "placement";
-}
-
 MapState Moved(const Rigid2& T_picture_map, MapState state) {
   for (auto& [id, pose] : state.pose_graph.submap_poses) {
     pose = T_picture_map * pose;
@@ -166,87 +79,432 @@ MapState Moved(const Rigid2& T_picture_map, MapState state) {
   return state;
 }
 
-// Adds the picture of the map and, at its placement, of the query.
-absl::Status DrawPlacement(const ReportOptions& options, const Session& map,
-                           const Session& query, const Localization& result,
-                           const ProgressCallback& on_progress,
-                           ReportContent* const content) {
-  const std::vector<MapPart> parts = NumberTrajectories(
-      {map.path, query.path}, {&map.map.state, &query.map.state});
-  MapState shown;
-  AppendMap(parts[0], map.map.state, &shown);
-  if (!result.placements.empty()) {
-    AppendMap(parts[1],
-              Moved(result.placements.front().T_map_query, query.map.state),
-              &shown);
-  }
-  const auto read = [&](const SubmapCallback& on_submap) -> absl::Status {
-    for (const auto& [id, grid] : query.scan_grids) {
-      on_submap(Renumbered(parts[1], id), {}, grid);
+// --- relocalize. ---
+
+// Of each placement being right, given that rivals of the best one exclude each
+// other, and that none may be right. Others stand for themselves.
+std::vector<double> PlacementProbabilities(
+    const std::vector<Placement>& placements) {
+  // The best comes first: relative to it, nothing overflows.
+  const double best = placements.empty() ? 0. : placements.front().score;
+  double sum = std::exp(-best);  // none of them
+  for (size_t k = 0; k < placements.size(); ++k) {
+    if (k == 0 || placements[k].is_rival) {
+      sum += std::exp(placements[k].score - best);
     }
-    absl::Status status = ReadPart(parts[0], {}, on_progress, on_submap);
-    if (status.ok() && !result.placements.empty() &&
-        query.scan_grids.size() < query.map.state.submaps.size()) {
-      status = ReadPart(parts[1], query.scan_grids, on_progress, on_submap);
+  }
+  std::vector<double> probabilities;
+  for (size_t k = 0; k < placements.size(); ++k) {
+    probabilities.push_back(k == 0 || placements[k].is_rival
+                                ? std::exp(placements[k].score - best) / sum
+                                : ProbabilityOf(placements[k].score));
+  }
+  return probabilities;
+}
+
+// Where the drive of the query ended, in its map frame.
+Rigid2 EndOf(const MapState& query) {
+  const std::map<NodeId, Node>& nodes = query.pose_graph.nodes;
+  return nodes.empty() ? Rigid2() : nodes.rbegin()->second.T_map_node;
+}
+
+std::vector<Measure> PlacementMeasures(const PlacementOptions& options) {
+  const std::string path = absl::StrCat(kPlacementPath, ".");
+  return {
+      {"probability", "probability", "%", 2,
+       "Of being right, as the scores say: rivals exclude each other, and none "
+       "may be right.",
+       true},
+      {"score", "score", "", 2,
+       "Log-odds: the evidence of the places that support it.", true,
+       Measure::Bound::kAtLeast, options.min_score, path + "min_score"},
+      {"lead", "lead", "", 2,
+       "By how much its score exceeds that of the best placement that it "
+       "excludes.",
+       true, Measure::Bound::kAtLeast, options.min_lead, path + "min_lead"},
+      {"matches", "matches", "", 0, "Pairs of submaps that vote for it.",
+       true}};
+}
+
+std::vector<RowStatus> PlacementStatuses() {
+  const std::string path = absl::StrCat(kPlacementPath, ".");
+  return {{"answer", "the answer", Tone::kGood, "It is certain.", ""},
+          {"best", "best, but refused", Tone::kCaution,
+           "The best of them, which is not certain.", path + "min_score"},
+          {"rival", "rival", Tone::kBad,
+           "It and the best one exclude each other.", path + "min_lead"},
+          {"other", "other", Tone::kNeutral,
+           "Neither supports nor excludes the best one.", ""}};
+}
+
+InspectedTable PlacementTable(const PlacementOptions& options,
+                              const MapState& query,
+                              const Localization& result) {
+  InspectedTable table{
+      "candidates", "Candidates",
+      "Placements of the query; arrows show where its drive ended.",
+      PlacementMeasures(options), PlacementStatuses()};
+  const std::vector<double> probabilities =
+      PlacementProbabilities(result.placements);
+  for (size_t k = 0; k < std::min(result.placements.size(), kMaxCandidates);
+       ++k) {
+    const Placement& placement = result.placements[k];
+    InspectedRow row;
+    row.status = k > 0                ? placement.is_rival ? "rival" : "other"
+                 : result.T_map_query ? "answer"
+                                      : "best";
+    row.T_map_robot = placement.T_map_query * EndOf(query);
+    row.values = {
+        100. * probabilities[k], placement.score,
+        k == 0 && result.runner_up_score
+            ? std::make_optional(placement.score - *result.runner_up_score)
+            : std::nullopt,
+        static_cast<double>(placement.votes.size())};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+InspectedRow MatchRowOf(const Match& match, const std::string& status,
+                        const std::string& remark) {
+  InspectedRow row;
+  row.status = status;
+  row.remark = remark;
+  row.pair = match.pair;
+  row.values = MatchValues(match);
+  return row;
+}
+
+std::vector<RowStatus> VoteStatuses() {
+  const std::string path = absl::StrCat(kPlacementPath, ".");
+  return {
+      {"crossed", "crossed by a wall", Tone::kBad,
+       "The best placement puts a long wall of one across free space of the "
+       "other.",
+       path + "max_crossing_wall_meters"},
+      {"contradicting", "contradicts", Tone::kBad,
+       "The best placement puts walls of one in free space of the other.",
+       path + "max_contradiction_ratio"},
+      {"rival", "votes for a rival", Tone::kCaution,
+       "It supports a placement that excludes the best one.",
+       path + "min_lead"},
+      {"agreeing", "agrees", Tone::kGood, "It votes for the best placement.",
+       ""},
+      {"other", "other", Tone::kNeutral,
+       "It neither supports nor excludes the best placement.", ""}};
+}
+
+// The pairs that walls cross, at the pose that the best placement gives them.
+std::vector<InspectedRow> CrossedRows(const Session& map, const Session& query,
+                                      const Localization& result,
+                                      const size_t num_match_values) {
+  std::vector<InspectedRow> rows;
+  for (const CrossingWall& wall : result.crossing_walls) {
+    const Rigid2 T_reference_query =
+        map.map.state.pose_graph.submap_poses.at(wall.reference).Inverse() *
+        result.placements.front().T_map_query *
+        query.map.state.pose_graph.submap_poses.at(wall.query);
+    InspectedRow row;
+    row.status = "crossed";
+    row.pair = {wall.reference, wall.query, T_reference_query, 0.};
+    row.values.resize(num_match_values);
+    row.values.push_back(wall.length);
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+InspectedTable VoteTable(const LoopClosingOptions& stages,
+                         const PlacementOptions& options, const Session& map,
+                         const Session& query, const Localization& result) {
+  InspectedTable table{
+      "matches", "Matches", "",
+      MatchMeasures(stages.recognition.match.verification.judgement,
+                    kJudgementPath),
+      VoteStatuses()};
+  table.rows = CrossedRows(map, query, result, table.measures.size());
+  table.measures.push_back(
+      {"crossing_wall", "crossing wall", "m", 1,
+       "The longest straight wall of one across free space of the other.",
+       false, Measure::Bound::kAtMost, options.max_crossing_wall_meters,
+       absl::StrCat(kPlacementPath, ".max_crossing_wall_meters")});
+  for (const Match& match : result.contradictions) {
+    table.rows.push_back(MatchRowOf(match, "contradicting", ""));
+  }
+  for (size_t k = 0; k < result.placements.size(); ++k) {
+    const Placement& placement = result.placements[k];
+    const std::string status = k == 0               ? "agreeing"
+                               : placement.is_rival ? "rival"
+                                                    : "other";
+    const std::string remark =
+        k == 0 ? "" : absl::StrCat("It votes for candidate ", k + 1, ".");
+    for (const size_t vote : placement.votes) {
+      table.rows.push_back(MatchRowOf(result.matches[vote], status, remark));
+    }
+  }
+  FinishTable(&table);
+  return table;
+}
+
+void JudgeLocalization(const Session& map, const Session& query,
+                       const Localization& result,
+                       Inspection* const inspection) {
+  if (result.T_map_query) {
+    inspection->tone = Tone::kGood;
+    inspection->verdict = absl::StrFormat(
+        "Localised: %s lies at %s in %s. %s, %d contradict.",
+        FileName(query.path), FormatPose(*result.T_map_query),
+        FileName(map.path), Counted(result.num_agreeing, "match") + " agree",
+        result.num_contradicting);
+  } else {
+    inspection->tone = Tone::kCaution;
+    inspection->verdict =
+        absl::StrCat("Not localised (", LocalizationVerdictName(result.verdict),
+                     "): ", result.reason, ".");
+  }
+  inspection->numbers = {
+      {"Answer",
+       result.T_map_query
+           ? FormatPose(*result.T_map_query)
+           : absl::StrCat("none: ", LocalizationVerdictName(result.verdict))},
+      {"Reason", result.reason},
+      {"Score (log-odds)", FormatScore(result.score)},
+      {"Score of the runner-up", FormatScore(result.runner_up_score)},
+      {"Agreeing matches", absl::StrCat(result.num_agreeing)},
+      {"Contradicting matches", absl::StrCat(result.num_contradicting)},
+      {"Overlapping pairs of submaps", absl::StrCat(result.num_compared)},
+      {"Of them crossed by a wall", absl::StrCat(result.crossing_walls.size())},
+      {"Submaps of the map", absl::StrCat(map.map.places.size())},
+      {"Submaps of the query", absl::StrCat(query.map.places.size())}};
+}
+
+void RenumberRows(const std::vector<MapPart>& parts,
+                  InspectedTable* const table) {
+  for (InspectedRow& row : table->rows) {
+    row.pair->reference = Renumbered(parts[0], row.pair->reference);
+    row.pair->query = Renumbered(parts[1], row.pair->query);
+  }
+}
+
+const char* CaptionOf(const Localization& result) {
+  return result.T_map_query ? "The map, and the query where it was found"
+         : result.placements.empty()
+             ? "The map; no placement of the query was found"
+             : "The map, and the query at its best but refused placement";
+}
+
+// The map and, if there is a placement, the query at the best one.
+class PlacedSessions {
+ public:
+  PlacedSessions(const Session& map, const Session& query,
+                 const Localization& result)
+      : query_(query),
+        parts_(NumberTrajectories({map.path, query.path},
+                                  {&map.map.state, &query.map.state})),
+        shows_query_(!result.placements.empty()) {
+    AppendMap(parts_[0], map.map.state, &shown_);
+    if (!shows_query_) return;
+    AppendMap(parts_[1],
+              Moved(result.placements.front().T_map_query, query.map.state),
+              &shown_);
+  }
+
+  [[nodiscard]] const std::vector<MapPart>& parts() const { return parts_; }
+  [[nodiscard]] const MapState& shown() const { return shown_; }
+
+  [[nodiscard]] absl::Status Read(const ProgressCallback& on_progress,
+                                  const SubmapCallback& on_submap) const {
+    for (const auto& [id, grid] : query_.scan_grids) {
+      on_submap(Renumbered(parts_[1], id), {}, grid);
+    }
+    absl::Status status = ReadPart(parts_[0], {}, on_progress, on_submap);
+    if (status.ok() && shows_query_ &&
+        query_.scan_grids.size() < query_.map.state.submaps.size()) {
+      status = ReadPart(parts_[1], query_.scan_grids, on_progress, on_submap);
     }
     return status;
-  };
-  for (ReportedClosure& closure : content->closures) {
-    PairPose& pair = closure.match.pair;
-    pair.reference = Renumbered(parts[0], pair.reference);
-    pair.query = Renumbered(parts[1], pair.query);
   }
-  return DrawPictures({{CaptionOf(result),
-                        &shown,
-                        &shown.pose_graph,
-                        /*shows_links=*/true,
-                        {},
-                        LayersOf(parts)}},
-                      read, options, content);
+
+ private:
+  const Session& query_;
+  const std::vector<MapPart> parts_;
+  MapState shown_;
+  const bool shows_query_;
+};
+
+// --- merge. ---
+
+// The outcome of each session and of each pair of sessions.
+void JudgeMerging(const MergingResult& result,
+                  const std::vector<std::string>& names,
+                  Inspection* const inspection) {
+  size_t num_merged = 0;
+  for (size_t k = 0; k < result.sessions.size(); ++k) {
+    const MergedSession& session = result.sessions[k];
+    num_merged += session.T_merged_session.has_value();
+    inspection->numbers.emplace_back(
+        absl::StrCat(k + 1, ": ", names[k]),
+        session.T_merged_session
+            ? "placed at " + FormatPose(*session.T_merged_session)
+            : "not in the merged map: " + session.left_out);
+    if (!session.T_merged_session) {
+      inspection->remarks.push_back(absl::StrCat(
+          names[k], " is not in the merged map: ", session.left_out, "."));
+    }
+  }
+  if (!result.refusal.empty()) {
+    inspection->tone = Tone::kBad;
+    inspection->verdict = absl::StrCat("Refused: ", result.refusal, ".");
+    return;
+  }
+  const bool is_clean =
+      num_merged == result.sessions.size() && result.contradictions.empty();
+  inspection->tone = is_clean ? Tone::kGood : Tone::kCaution;
+  inspection->verdict = absl::StrFormat(
+      "Merged %d of %d maps by %s; of %d pairs of submaps that overlap, %d "
+      "contradict each other.",
+      num_merged, result.sessions.size(),
+      Counted(NumWithStatus(result.closed.closures, ClosureStatus::kInGraph),
+              "closure"),
+      result.num_overlapping, result.contradictions.size());
+}
+
+void AddMergingNumbers(const MergingResult& result,
+                       Inspection* const inspection) {
+  for (const SessionLink& link : result.links) {
+    const Localization& found = link.localization;
+    inspection->numbers.emplace_back(
+        absl::StrCat(link.first + 1, " and ", link.second + 1),
+        absl::StrCat(LocalizationVerdictName(found.verdict), ", score ",
+                     FormatScore(found.score), ", runner-up ",
+                     FormatScore(found.runner_up_score), ", ",
+                     found.num_agreeing, " matches agree, ",
+                     found.num_contradicting, " contradict: ", found.reason));
+  }
+  inspection->numbers.emplace_back("Overlapping pairs of submaps",
+                                   absl::StrCat(result.num_overlapping));
+  inspection->numbers.emplace_back("Pairs that contradict each other",
+                                   absl::StrCat(result.contradictions.size()));
+}
+
+// The sessions in the merged map, in the order of the parts.
+std::vector<InspectedSession> MergedSessions(const MergingResult& result) {
+  std::vector<InspectedSession> sessions;
+  for (const MapPart& part : result.parts) {
+    sessions.push_back({FileName(part.path), "merged", Tone::kGood});
+  }
+  return sessions;
+}
+
+// Each session as it is by itself, where it was placed.
+PoseGraph PlacedByThemselves(const MergingResult& result) {
+  std::map<int, Rigid2> T_merged_trajectories;
+  auto part = result.parts.begin();
+  for (const MergedSession& session : result.sessions) {
+    if (!session.T_merged_session) continue;
+    if (part == result.parts.end()) break;
+    for (const auto& [trajectory, number] : part->trajectories) {
+      T_merged_trajectories[number] = *session.T_merged_session;
+    }
+    ++part;
+  }
+  PoseGraph placed = result.state.pose_graph;
+  for (auto& [id, pose] : placed.submap_poses) {
+    pose = T_merged_trajectories[id.trajectory] * pose;
+  }
+  for (auto& [id, node] : placed.nodes) {
+    node.T_map_node = T_merged_trajectories[id.trajectory] * node.T_map_node;
+  }
+  return placed;
+}
+
+// How much the walls of the maps are at odds, once they are drawn.
+void AddSeams(Inspection* const inspection) {
+  const std::vector<StatePicture>& drawn = inspection->drawn.states;
+  if (drawn.size() < 2 || !drawn.back().conflict_share) return;
+  inspection->numbers.emplace_back(
+      "Walls in free space of another map",
+      absl::StrFormat("%.1f %% as placed, %.1f %% in the merged map",
+                      100. * *drawn.front().conflict_share,
+                      100. * *drawn.back().conflict_share));
+}
+
+InspectedTable MergingTable(const LoopClosingOptions& stages,
+                            const MergingResult& result) {
+  InspectedTable table = MakeClosureTable(stages, result.closed.closures, {});
+  table.statuses.insert(
+      table.statuses.begin(),
+      {"contradicting", "contradicts", Tone::kBad,
+       "The merged map puts walls of one in free space of the other.",
+       "fold_check.max_contradiction_ratio"});
+  for (const Match& match : result.contradictions) {
+    table.rows.push_back(MatchRowOf(match, "contradicting", ""));
+    table.rows.back().values.resize(table.measures.size());
+  }
+  FinishTable(&table);
+  return table;
 }
 
 }  // namespace
 
 absl::Status WriteRelocalizationReport(const ReportRequest& request,
+                                       const LoopClosingOptions& stages,
+                                       const LocalizationOptions& options,
                                        const Session& map, const Session& query,
                                        const Localization& result,
                                        const ProgressCallback& on_progress) {
-  ReportContent content;
-  content.title = absl::StrCat("Where is ", FileName(query.path), " in ",
-                               FileName(map.path), "?");
-  content.subtitle = "Found by the shape of free space, without a pose prior.";
-  content.summary = LocalizationSummary(map, query, result);
-  if (!result.T_map_query) {
-    content.warnings.push_back("Not localized: " + result.reason);
-  }
-  content.stages = result.stage_seconds;
-  content.options = request.options_text;
-  const std::vector<ReportedClosure> closures = ClosuresOf(result);
-  content.closures = closures;
-  const absl::Status status =
-      DrawPlacement(request.options, map, query, result, on_progress, &content);
+  const PlacedSessions placed(map, query, result);
+  Inspection inspection;
+  inspection.title = absl::StrCat("Where is ", FileName(query.path), " in ",
+                                  FileName(map.path), "?");
+  JudgeLocalization(map, query, result, &inspection);
+  inspection.sessions = {{FileName(map.path), "the map"},
+                         {FileName(query.path), "the query"}};
+  inspection.states = {
+      {"placed", "Placed", CaptionOf(result), &placed.shown().pose_graph}};
+  AddSubmapsOfParts(placed.shown(), placed.parts(), /*shows_new_ids=*/false,
+                    &inspection);
+  inspection.tables = {
+      PlacementTable(options.placement, query.map.state, result),
+      VoteTable(stages, options.placement, map, query, result)};
+  RenumberRows(placed.parts(), &inspection.tables.back());
+  inspection.stage_seconds = result.stage_seconds;
+  const absl::Status status = DrawInspection(
+      request.options,
+      [&](const SubmapCallback& on_submap) {
+        return placed.Read(on_progress, on_submap);
+      },
+      &inspection);
   if (!status.ok()) return status;
-  // The page uses the ids in the files.
-  for (size_t k = 0; k < closures.size(); ++k) {
-    content.closures[k].match.pair = closures[k].match.pair;
-  }
-  return WriteReport(request.directory, content);
+  return WriteInspector(request, inspection);
 }
 
 absl::Status WriteMergingReport(const ReportRequest& request,
+                                const LoopClosingOptions& stages,
                                 const MergingResult& result,
                                 const ProgressCallback& on_progress) {
-  ReportContent content;
+  Inspection inspection;
   std::vector<std::string> names;
   for (const MergedSession& session : result.sessions) {
     names.push_back(FileName(session.path));
   }
-  content.title = absl::StrCat("Merging ", names.size(), " maps");
-  content.subtitle = "Found by the shape of free space, without a pose prior.";
-  AddMergingSummary(result, names, &content);
-  content.stages = result.stage_seconds;
-  content.options = request.options_text;
-  content.closures = ClosuresOf(result);
+  inspection.title = absl::StrCat("Merging ", names.size(), " maps");
+  JudgeMerging(result, names, &inspection);
+  AddMergingNumbers(result, &inspection);
+  inspection.stage_seconds = result.stage_seconds;
+  inspection.sessions = MergedSessions(result);
+  const PoseGraph placed = PlacedByThemselves(result);
+  if (!result.parts.empty()) {
+    inspection.states = {
+        {"before", "Before", "The maps as they are, where they were placed",
+         &placed},
+        {"after", "After", "The merged map", &result.closed.pose_graph}};
+    AddSubmapsOfParts(result.state, result.parts, /*shows_new_ids=*/true,
+                      &inspection);
+    AddDisplacement(&inspection);
+  }
+  AddTornSubmaps(result.closed.torn_submaps, &inspection);
+  inspection.tables = {MergingTable(stages, result)};
   const auto read = [&](const SubmapCallback& on_submap) {
     absl::Status status;
     for (const MapPart& part : result.parts) {
@@ -254,19 +512,11 @@ absl::Status WriteMergingReport(const ReportRequest& request,
     }
     return status;
   };
-  if (!result.parts.empty()) {
-    const absl::Status status =
-        DrawPictures({{"The merged map, with a colour for each input; red "
-                       "where walls of one stand in another's free space",
-                       &result.state,
-                       &result.closed.pose_graph,
-                       /*shows_links=*/true,
-                       {},
-                       LayersOf(result.parts)}},
-                     read, request.options, &content);
-    if (!status.ok()) return status;
-  }
-  return WriteReport(request.directory, content);
+  const absl::Status status =
+      DrawInspection(request.options, read, &inspection);
+  if (!status.ok()) return status;
+  AddSeams(&inspection);
+  return WriteInspector(request, inspection);
 }
 
 }  // namespace cartographer_sdf

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cartographer_sdf/report/submap_raster.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -18,19 +19,16 @@ constexpr Color kReferenceWall{0.05, 0.15, 0.45};
 constexpr Color kQueryWall{0.85, 0.1, 0.1};
 constexpr Color kContradiction{1., 0.6, 0.};
 constexpr Color kCorrespondence{0., 0.6, 0.3, 0.7};
-// Between these, a cell is too uncertain to be drawn as either.
-constexpr float kMinWallProbability = 0.55f;
-constexpr float kMaxFreeProbability = 0.48f;
 // A wall this close explains a slightly displaced wall.
 constexpr double kContradictionRadiusMeters = 0.3;
 constexpr double kMaxTranslationMeters = 1e6;
 
 bool IsWall(const OccupancyGrid& grid, const int i, const int j) {
-  return grid.known(i, j) && grid.probability(i, j) >= kMinWallProbability;
+  return ClassOf(grid, i, j) == CellClass::kWall;
 }
 
 bool IsFree(const OccupancyGrid& grid, const int i, const int j) {
-  return grid.known(i, j) && grid.probability(i, j) <= kMaxFreeProbability;
+  return ClassOf(grid, i, j) == CellClass::kFree;
 }
 
 bool IsFreeAt(const OccupancyGrid& grid, const Eigen::Vector2d& p_grid) {

@@ -5,10 +5,13 @@
 
 #include <iostream>
 #include <map>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/file/text_file.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/stages.h"
@@ -18,8 +21,36 @@ DEFINE_string(constraints, "",
               "CSV file to write every inter-submap constraint to, with its "
               "verdict and evidence. None if empty.");
 
+DEFINE_string(drop, "",
+              "CSV file with the constraints to drop, in place of those that "
+              "are doubtful: as the report saves it, or rows of "
+              "--constraints. None if empty.");
+
 namespace cartographer_sdf {
 namespace {
+
+// None without --drop.
+absl::StatusOr<std::optional<std::vector<ListedConstraint>>> DropListOfFlags() {
+  if (FLAGS_drop.empty()) return std::optional<std::vector<ListedConstraint>>();
+  const absl::StatusOr<std::vector<CsvRow>> rows =
+      ReadCsv(FLAGS_drop, {{"constraint", CsvType::kInteger},
+                           {"submap_trajectory", CsvType::kInteger},
+                           {"submap_index", CsvType::kInteger},
+                           {"node_trajectory", CsvType::kInteger},
+                           {"node_index", CsvType::kInteger}});
+  if (!rows.ok()) return rows.status();
+  std::vector<ListedConstraint> list;
+  for (const CsvRow& row : *rows) {
+    if (row.Integer(0) < 0) {
+      return LineError(FLAGS_drop, row.line,
+                       "the number of a constraint must not be negative");
+    }
+    list.push_back({static_cast<size_t>(row.Integer(0)),
+                    {row.Integer(1), row.Integer(2)},
+                    {row.Integer(3), row.Integer(4)}});
+  }
+  return std::make_optional(std::move(list));
+}
 
 std::string DescribeWalls(const MapQuality& quality) {
   return absl::StrFormat("%.2f %% in free space, %.3f m apart",
@@ -32,8 +63,8 @@ void PrintQuality(const Audit& audit) {
   if (audit.quality_before.num_pairs == 0) return;
   std::cout << "walls where submaps overlap: "
             << DescribeWalls(audit.quality_before);
-  if (audit.num_doubtful > 0) {
-    std::cout << "; without the doubtful constraints: "
+  if (!audit.dropped.empty()) {
+    std::cout << "; without the dropped constraints: "
               << DescribeWalls(audit.quality_after);
   }
   std::cout << "\n";
@@ -52,6 +83,10 @@ void PrintSummary(const Audit& audit) {
     std::cout << absl::StrFormat("  %5d %s%s\n", count,
                                  IsDoubtful(verdict) ? "doubtful: " : "",
                                  AuditVerdictName(verdict));
+  }
+  if (!FLAGS_drop.empty()) {
+    std::cout << audit.dropped.size() << " constraints are dropped, as "
+              << FLAGS_drop << " says\n";
   }
   PrintQuality(audit);
   PrintStages(audit.stage_seconds);
@@ -94,6 +129,7 @@ void RecordAudit(const Audit& audit, RunRecord* const record) {
 // constraints is worse than the one that was read, it is not written, which is
 // a refusal; the report is.
 absl::Status WriteFiles(const Options& options, const Audit& audit,
+                        const RunDescription& run,
                         StageProgress* const progress) {
   absl::Status status;
   if (!FLAGS_constraints.empty()) {
@@ -105,8 +141,9 @@ absl::Status WriteFiles(const Options& options, const Audit& audit,
   status = WriteMapAndReport(
       audit.state, audit.pose_graph,
       [&](const SubmapsReader& read_submaps) {
-        return WriteAuditReport(ReportRequestOfFlags(options), FLAGS_input,
-                                audit, read_submaps);
+        return WriteAuditReport(ReportRequestOfFlags(options, run),
+                                options.loop_closing, options.audit,
+                                FLAGS_input, audit, read_submaps);
       },
       progress);
   if (!status.ok() || output.empty()) return status;
@@ -118,13 +155,18 @@ absl::Status WriteFiles(const Options& options, const Audit& audit,
 absl::Status RunAudit(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("audit");
   if (!task.ok()) return task.status();
+  const absl::StatusOr<std::optional<std::vector<ListedConstraint>>> drop_list =
+      DropListOfFlags();
+  if (!drop_list.ok()) return drop_list.status();
   const Options& options = task->options;
   StageProgress progress(record);
   const absl::StatusOr<Audit> audit =
       AuditMap(options.loop_closing, options.audit, SourceOfFlags(FLAGS_input),
-               task->frozen_trajectories, task->executor, progress.Callback());
+               task->frozen_trajectories, task->executor, progress.Callback(),
+               *drop_list);
   if (!audit.ok()) return audit.status();
-  const absl::Status status = WriteFiles(options, *audit, &progress);
+  const absl::Status status =
+      WriteFiles(options, *audit, record->run, &progress);
   RecordAudit(*audit, record);
   if (!status.ok()) return status;
   PrintSummary(*audit);
@@ -147,7 +189,7 @@ Subcommand AuditSubcommand() {
       "audit",
       "find the constraints of a map that are doubtful",
       "A.pbstream [--output B.pbstream | --in_place] [--report DIR] "
-      "[--constraints C.csv] [--result R.json] [--repair]",
+      "[--constraints C.csv] [--drop D.csv] [--result R.json] [--repair]",
       "Checks every inter-submap constraint: whether walls of one submap stand "
       "in free space of the other at the constraint's pose, whether another "
       "pose of the two submaps is as good, whether the constraint agrees with "
@@ -157,6 +199,8 @@ Subcommand AuditSubcommand() {
       "file stays as it is. Where the walls of that map would agree less than "
       "those of the map as it is, nothing is written, and the exit code is "
       "3.\n\n"
+      "With --drop, a list says which constraints are dropped, and no others: "
+      "that of doubtful ones which the report saves, or part of it.\n\n"
       "A map without doubtful constraints is copied, byte for byte.",
       {{"input", FileUse::kRead}},
       {{"output",
@@ -165,6 +209,7 @@ Subcommand AuditSubcommand() {
         "Map to write, a .pbstream without the doubtful constraints."},
        {"report", FileUse::kWriteInto, {"index.html"}},
        {"constraints", FileUse::kWriteText},
+       {"drop", FileUse::kRead},
        {"picture", FileUse::kWriteText},
        "picture_pixels",
        "in_place",

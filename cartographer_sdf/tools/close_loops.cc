@@ -90,8 +90,9 @@ absl::Status RunCloseLoops(RunRecord* const record) {
     status = WriteMapAndReport(
         result->state, result->closed.pose_graph,
         [&](const SubmapsReader& read_submaps) {
-          return WriteCloseLoopsReport(ReportRequestOfFlags(task->options),
-                                       FLAGS_input, *result, read_submaps);
+          return WriteCloseLoopsReport(
+              ReportRequestOfFlags(task->options, record->run),
+              task->options.loop_closing, FLAGS_input, *result, read_submaps);
         },
         &progress);
   }

@@ -175,9 +175,9 @@ absl::StatusOr<std::vector<Series>> AnswerByMethods(
   return series;
 }
 
-Measurement Measure(const std::string& series, const double min_overlap,
-                    const RandomPairData& data,
-                    const std::vector<AnswerLabel>& labels) {
+Measurement MeasureAnswers(const std::string& series, const double min_overlap,
+                           const RandomPairData& data,
+                           const std::vector<AnswerLabel>& labels) {
   const PrecisionRecallCurve by_pair = JudgePairs(
       data.truths, data.pairs, labels, min_overlap, AnswerJudgement::kByPair);
   const PrecisionRecallCurve by_pose = JudgePairs(
@@ -217,7 +217,7 @@ absl::Status MeasureRandomPairs(const Truth& truth,
   if (!series.ok()) return series.status();
   for (const double min_overlap : flags->min_overlaps) {
     for (const auto& [name, is_variant, labels] : *series) {
-      measurements->push_back(Measure(name, min_overlap, *data, labels));
+      measurements->push_back(MeasureAnswers(name, min_overlap, *data, labels));
     }
   }
   for (const auto& [name, is_variant, labels] : *series) {

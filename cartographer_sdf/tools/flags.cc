@@ -91,8 +91,10 @@ absl::Status CheckConfigurationDirectories() {
   return absl::OkStatus();
 }
 
-ReportRequest ReportRequestOfFlags(const Options& options) {
-  return {FLAGS_report, options.report, FormatOptions(options)};
+ReportRequest ReportRequestOfFlags(const Options& options,
+                                   const RunDescription& run) {
+  return {FLAGS_report, options.report, FormatOptions(options),
+          ChangedOptions(options), run};
 }
 
 absl::StatusOr<int> NumThreadsOfFlags() {

@@ -43,7 +43,8 @@ namespace cartographer_sdf {
 [[nodiscard]] absl::StatusOr<Options> LoadOptionsOfFlags();
 
 // From --report.
-[[nodiscard]] ReportRequest ReportRequestOfFlags(const Options& options);
+[[nodiscard]] ReportRequest ReportRequestOfFlags(const Options& options,
+                                                 const RunDescription& run);
 
 // From --threads; at least 1.
 [[nodiscard]] absl::StatusOr<int> NumThreadsOfFlags();

@@ -97,10 +97,12 @@ absl::StatusOr<std::vector<MapSource>> InputsOfFlags() {
 // Writes the files that the flags ask for. A refusal is an error, but still
 // writes the report.
 absl::Status WriteFiles(const Options& options, const MergingResult& result,
+                        const RunDescription& run,
                         StageProgress* const progress) {
   absl::Status status;
   if (!FLAGS_report.empty()) {
-    status = WriteMergingReport(ReportRequestOfFlags(options), result,
+    status = WriteMergingReport(ReportRequestOfFlags(options, run),
+                                options.loop_closing, result,
                                 progress->Begin("report"));
   }
   if (!status.ok()) return status;
@@ -126,7 +128,8 @@ absl::Status RunMerge(RunRecord* const record) {
       progress.Callback());
   if (!result.ok()) return result.status();
   RecordMerging(*result, record);
-  const absl::Status status = WriteFiles(options, *result, &progress);
+  const absl::Status status =
+      WriteFiles(options, *result, record->run, &progress);
   if (!status.ok()) return status;
   PrintSummary(*result);
   PrintPaths();

@@ -7,6 +7,7 @@
 
 #include <ctime>
 #include <filesystem>
+#include <optional>
 
 #include "cartographer_sdf/file/sha256.h"
 #include "cartographer_sdf/file/whole_file.h"
@@ -45,10 +46,10 @@ std::string StatusName(const RunRecord& record, const absl::Status& status) {
   return IsUsageError(status) ? "wrong_usage" : "failed";
 }
 
-Json BytesOf(const std::string& path) {
+std::optional<uint64_t> BytesOf(const std::string& path) {
   std::error_code error;
   const uintmax_t bytes = std::filesystem::file_size(path, error);
-  return error ? Json() : Json(bytes);
+  return error ? std::nullopt : std::make_optional<uint64_t>(bytes);
 }
 
 Json OutputsJson(const Subcommand& subcommand) {
@@ -61,7 +62,7 @@ Json OutputsJson(const Subcommand& subcommand) {
     }
     json.push_back({{"flag", file.flag},
                     {"path", file.path},
-                    {"bytes", BytesOf(file.path)}});
+                    {"bytes", ToJson(BytesOf(file.path))}});
   }
   return json;
 }
@@ -91,25 +92,30 @@ Json CountsJson(const RunRecord& record) {
 
 }  // namespace
 
-ResultFile::ResultFile(const Subcommand& subcommand,
-                       const std::vector<std::string>& arguments)
-    : subcommand_(subcommand),
-      arguments_(arguments),
-      begin_(std::chrono::steady_clock::now()),
-      started_(std::chrono::system_clock::now()) {}
+RunDescription DescribeRun(const Subcommand& subcommand,
+                           const std::vector<std::string>& arguments) {
+  return {subcommand.program,
+          ProgramVersion(),
+          ProgramCommit(),
+          subcommand.name,
+          arguments,
+          FormatIsoTime(std::chrono::system_clock::now()),
+          {}};
+}
 
-absl::Status ResultFile::RecordInputs() {
-  if (FLAGS_result.empty()) return absl::OkStatus();
-  for (const NamedFile& file : FilesThatAreRead(subcommand_)) {
+absl::Status DescribeInputs(const Subcommand& subcommand,
+                            RunDescription* const run) {
+  if (FLAGS_result.empty() && FLAGS_report.empty()) return absl::OkStatus();
+  for (const NamedFile& file : FilesThatAreRead(subcommand)) {
     const absl::StatusOr<std::string> sum = Sha256OfFile(file.path);
     if (!sum.ok()) return sum.status();
-    inputs_.push_back({{"flag", file.flag},
-                       {"path", file.path},
-                       {"bytes", BytesOf(file.path)},
-                       {"sha256", *sum}});
+    run->inputs.push_back({file.flag, file.path, BytesOf(file.path), *sum});
   }
   return absl::OkStatus();
 }
+
+ResultFile::ResultFile(const Subcommand& subcommand)
+    : subcommand_(subcommand), begin_(std::chrono::steady_clock::now()) {}
 
 absl::Status ResultFile::Write(const RunRecord& record,
                                const RunEnd& end) const {
@@ -119,24 +125,18 @@ absl::Status ResultFile::Write(const RunRecord& record,
           .count();
   const std::string message =
       end.status.ok() ? record.reason : std::string(end.status.message());
-  Json json = {
-      {"schema", kResultSchema},
-      {"schema_version", kResultSchemaVersion},
-      {"program",
-       {{"name", subcommand_.program},
-        {"version", ProgramVersion()},
-        {"commit", ProgramCommit()}}},
-      {"command", {{"name", subcommand_.name}, {"arguments", arguments_}}},
-      {"status", StatusName(record, end.status)},
-      {"exit_code", static_cast<int>(end.exit_code)},
-      {"message", message},
-      {"started", FormatIsoTime(started_)},
-      {"inputs", inputs_},
-      {"outputs", end.status.ok() ? OutputsJson(subcommand_) : Json::array()},
-      {"counts", CountsJson(record)},
-      {"warnings", WarningsJson(record)},
-      {"seconds", SecondsJson(record, total)},
-      {"peak_memory_bytes", PeakMemoryBytes()}};
+  Json json = {{"schema", kResultSchema},
+               {"schema_version", kResultSchemaVersion}};
+  json.update(ToJson(record.run));
+  json.update(
+      {{"status", StatusName(record, end.status)},
+       {"exit_code", static_cast<int>(end.exit_code)},
+       {"message", message},
+       {"outputs", end.status.ok() ? OutputsJson(subcommand_) : Json::array()},
+       {"counts", CountsJson(record)},
+       {"warnings", WarningsJson(record)},
+       {"seconds", SecondsJson(record, total)},
+       {"peak_memory_bytes", PeakMemoryBytes()}});
   json.update(record.answer);
   return WriteWholeFile(FLAGS_result, FormatJson(json));
 }

@@ -28,24 +28,26 @@ struct RunEnd {
   ExitCode exit_code = ExitCode::kDone;
 };
 
-// Collects what is known before the run, and writes the file after it. Does
-// nothing without --result.
+// What is known before the run, its inputs aside.
+[[nodiscard]] RunDescription DescribeRun(
+    const Subcommand& subcommand, const std::vector<std::string>& arguments);
+
+// Before the run, which may replace its input: computes the checksums, where
+// --result or --report tells of them.
+[[nodiscard]] absl::Status DescribeInputs(const Subcommand& subcommand,
+                                          RunDescription* run);
+
+// Writes the file after the run. Does nothing without --result.
 class ResultFile {
  public:
-  // The flags are set, and the file of --result may be written.
-  ResultFile(const Subcommand& subcommand,
-             const std::vector<std::string>& arguments);
-  // Before the run, which may replace its input: computes the checksums.
-  [[nodiscard]] absl::Status RecordInputs();
+  // When the run begins; the file of --result may be written.
+  explicit ResultFile(const Subcommand& subcommand);
   [[nodiscard]] absl::Status Write(const RunRecord& record,
                                    const RunEnd& end) const;
 
  private:
   const Subcommand& subcommand_;
-  const std::vector<std::string>& arguments_;
   const std::chrono::steady_clock::time_point begin_;
-  const std::chrono::system_clock::time_point started_;
-  Json inputs_ = Json::array();
 };
 
 }  // namespace cartographer_sdf

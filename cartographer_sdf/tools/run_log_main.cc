@@ -193,8 +193,9 @@ absl::Status RunAndReport(const Recording& recording,
   if (!result.ok()) return result.status();
   RecordRun(*result, record);
   if (!FLAGS_report.empty()) {
-    if (absl::Status status = WriteRunReport(
-            FLAGS_report, FLAGS_log, *options.output_path, options, *result);
+    if (absl::Status status =
+            WriteRunReport(FLAGS_report, FLAGS_log, *options.output_path,
+                           options, *result, record->run);
         !status.ok()) {
       return status;
     }

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/reports.h"
 
@@ -19,8 +20,7 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr double kDegrees = 180. / M_PI;
-constexpr Color kClosureColor{0.84, 0.15, 0.16, 0.55};
-constexpr int kMaxPixels = 2400;
+constexpr int kMapPixels = 2400;  // longer side of the map in the page
 constexpr double kMilliseconds = 1e3;
 
 // Nearest rank; 0 if there are no values.
@@ -255,20 +255,165 @@ HistogramPlot LatencyHistogram(const std::vector<double>& seconds) {
           {{"calls", InMilliseconds(seconds)}}};
 }
 
-std::vector<ReportedClosure> ReportedClosures(
-    const std::vector<ClosureRecord>& records) {
-  std::vector<ReportedClosure> closures;
-  for (const ClosureRecord& record : records) {
-    ReportedClosure reported;
-    reported.match.pair = record.pair;
-    reported.match.evidence = record.evidence;
-    reported.match.inliers.resize(static_cast<size_t>(record.num_inliers));
-    reported.accepted = record.status == ClosureStatus::kInGraph;
-    reported.reason = ClosureStatusName(record.status);
-    if (reported.accepted) reported.link = kClosureColor;
-    closures.push_back(std::move(reported));
+// Of closures beside a live Cartographer, by the options in SDF_LIVE.
+std::vector<RowStatus> LiveStatuses() {
+  std::vector<RowStatus> statuses = ClosureStatuses("");
+  for (RowStatus& status : statuses) {
+    if (!status.option.empty()) status.option.erase(0, 1);
   }
-  return closures;
+  statuses.push_back({ClosureStatusName(ClosureStatus::kReady), "ready",
+                      Tone::kNeutral,
+                      "Its constraints enter with the next optimisation.", ""});
+  statuses.push_back({ClosureStatusName(ClosureStatus::kDetectedOnly),
+                      "detected only", Tone::kNeutral,
+                      "Injection is switched off, or there is no pose graph.",
+                      "inject_constraints"});
+  statuses.push_back({ClosureStatusName(ClosureStatus::kGone), "gone",
+                      Tone::kNeutral,
+                      "One of its submaps was trimmed or deleted before.", ""});
+  return statuses;
+}
+
+InspectedTable LiveClosureTable(const LiveOptions& options,
+                                const std::vector<ClosureRecord>& records) {
+  InspectedTable table{"closures", "Closures", "",
+                       MatchMeasures(options.match.verification.judgement,
+                                     "match.verification.judgement"),
+                       LiveStatuses()};
+  table.measures.push_back(
+      {"constraints", "constraints", "", 0,
+       "Scans that were registered between the two submaps; each is a "
+       "constraint of the pose graph.",
+       false, Measure::Bound::kAtLeast,
+       static_cast<double>(options.constraints.min_num_constraints),
+       "constraints.min_num_constraints"});
+  for (const ClosureRecord& record : records) {
+    Match match;
+    match.pair = record.pair;
+    match.evidence = record.evidence;
+    match.inliers.resize(static_cast<size_t>(record.num_inliers));
+    InspectedRow row;
+    row.status = ClosureStatusName(record.status);
+    row.pair = record.pair;
+    row.values = MatchValues(match);
+    row.values[2].reset();  // the record has no margin
+    row.values.push_back(static_cast<double>(record.num_constraints));
+    table.rows.push_back(std::move(row));
+  }
+  FinishTable(&table);
+  return table;
+}
+
+// The end of each search, where it says the robot is.
+InspectedTable SearchTable(const LocalizationOptions& options,
+                           const LogRunResult& result) {
+  const std::string path = "localization.localizer.placement.";
+  InspectedTable table{
+      "searches",
+      "Searches",
+      "Arrows show where the robot was found.",
+      {{"seconds", "after", "s", 1, "Driven until then.", true},
+       {"meters", "after", "m", 1, "Driven until then.", true},
+       {"score", "score", "", 2, "Log-odds of the answer.", true,
+        Measure::Bound::kAtLeast, options.placement.min_score,
+        path + "min_score"},
+       {"runner_up_score", "runner-up", "", 2,
+        "Score of the best answer that it excludes."},
+       {"queries", "queries", "", 0, "Of the search."}},
+      {{"located", "located", Tone::kGood, "The pose is certain.", ""},
+       {"refused", "not located", Tone::kCaution,
+        "The best pose is not certain.", path + "min_lead"}}};
+  for (const LocalizationMoment& moment : result.localizations) {
+    const LocalizationResult& found = moment.result;
+    InspectedRow row;
+    row.status = found.localized ? "located" : "refused";
+    row.remark = found.reason;
+    row.T_map_robot = found.T_map_tracking;
+    row.values = {moment.time - BeginOf(result), moment.distance, found.score,
+                  found.runner_up_score,
+                  static_cast<double>(found.num_queries)};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+// What the searcher knew of the robot's pose as each node was made. Without a
+// map there is nothing to search for.
+PathPhases PhasesOf(const LogRunOptions& options, const LogRunResult& result) {
+  PathPhases phases;
+  if (!options.map_path) return phases;
+  // As SearchStateName() has them.
+  phases.names = {"searching", "located", "lost"};
+  for (const NodeMoment& node : result.nodes) {
+    size_t phase = 0;
+    for (const LocalizationMoment& moment : result.localizations) {
+      if (moment.time > node.time) break;
+      phase = moment.result.localized ? 1 : moment.result.was_localized ? 2 : 0;
+    }
+    phases.phase_of_node[{result.trajectory_id, node.node_index}] = phase;
+  }
+  return phases;
+}
+
+void JudgeRun(const LogRunOptions& options, const LogRunResult& result,
+              Inspection* const inspection) {
+  const std::string driven =
+      absl::StrFormat("%.0f s and %.0f m", result.duration, result.distance);
+  if (!options.map_path) {
+    inspection->tone = Tone::kGood;
+    inspection->verdict = absl::StrFormat(
+        "Mapped %s; %s in the pose graph.", driven,
+        Counted(static_cast<size_t>(NumInjected(result)), "closure"));
+    return;
+  }
+  for (const LocalizationMoment& moment : result.localizations) {
+    if (!moment.result.localized) continue;
+    inspection->tone = Tone::kGood;
+    inspection->verdict =
+        absl::StrFormat("Located after %.1f m and %.1f s of %s.",
+                        moment.distance, moment.time - BeginOf(result), driven);
+    return;
+  }
+  inspection->tone = Tone::kCaution;
+  inspection->verdict =
+      absl::StrCat("Not located in the map, after ", driven, ".");
+}
+
+// The submaps of the frozen map, and those of the robot.
+void AddRunSubmaps(const MapState& map, const LogRunOptions& options,
+                   const LogRunResult& result, Inspection* const inspection) {
+  inspection->sessions = {{options.map_path ? "the map" : "the run"}};
+  AddSubmaps(map, inspection);
+  if (!options.map_path) return;
+  inspection->sessions.push_back({"the robot"});
+  for (auto& [id, submap] : inspection->submaps) {
+    submap.session = id.trajectory == result.trajectory_id ? 1 : 0;
+  }
+}
+
+Inspection InspectRun(const std::string& log, const MapState& map,
+                      const LogRunOptions& options,
+                      const LogRunResult& result) {
+  Inspection inspection;
+  inspection.title = "Run of " + FileName(log);
+  JudgeRun(options, result, &inspection);
+  inspection.numbers = SummaryRows(result);
+  inspection.numbers.emplace_back("Searcher", result.summary.has_value()
+                                                  ? "beside Cartographer"
+                                                  : "none: Cartographer alone");
+  AddRunSubmaps(map, options, result, &inspection);
+  inspection.states = {
+      {"final", "Final", "The map at the end of the run", &map.pose_graph}};
+  inspection.phases = PhasesOf(options, result);
+  if (options.map_path) {
+    inspection.tables.push_back(
+        SearchTable(options.live.localization.localizer, result));
+  }
+  inspection.tables.push_back(LiveClosureTable(options.live, result.closures));
+  inspection.histograms.push_back(LatencyHistogram(result.sensor_seconds));
+  inspection.stage_seconds = {{"until the last scan", result.wall_seconds},
+                              {"to finish", result.final_wall_seconds}};
+  return inspection;
 }
 
 }  // namespace
@@ -284,30 +429,24 @@ std::string FormatRunSummary(const LogRunResult& result) {
 absl::Status WriteRunReport(const std::string& directory,
                             const std::string& log, const std::string& map,
                             const LogRunOptions& options,
-                            const LogRunResult& result) {
+                            const LogRunResult& result,
+                            const RunDescription& run) {
   const absl::StatusOr<MapState> state = ReadMap(map);
   if (!state.ok()) return state.status();
-  ReportContent content;
-  content.title = "Run of " + FileName(log);
-  content.subtitle = result.summary.has_value()
-                         ? "Cartographer with the searcher."
-                         : "Cartographer alone.";
-  content.summary = SummaryRows(result);
-  content.closures = ReportedClosures(result.closures);
-  content.histograms.push_back(LatencyHistogram(result.sensor_seconds));
-  content.options = FormatLiveOptions(options.live);
-  ReportOptions report;
-  report.map_picture_pixels = kMaxPixels;
-  report.max_closure_pictures = 0;
-  absl::Status status = DrawPictures(
-      {{"The final map; closures of the searcher in red", &*state,
-        &state->pose_graph, /*shows_links=*/true}},
+  Inspection inspection = InspectRun(log, *state, options, result);
+  const ReportRequest request = {directory,
+                                 {kMapPixels},
+                                 FormatLiveOptions(options.live),
+                                 ChangedLiveOptions(options.live),
+                                 run};
+  absl::Status status = DrawInspection(
+      request.options,
       [&map](const SubmapCallback& on_submap) {
         return ReadMap(map, {on_submap, {}}).status();
       },
-      report, &content);
+      &inspection);
   // Also makes the directory.
-  if (status.ok()) status = WriteReport(directory, content);
+  if (status.ok()) status = WriteInspector(request, inspection);
   const std::filesystem::path path(directory);
   if (status.ok()) {
     status = WriteWholeFile((path / "nodes.csv").string(), NodesCsv(result));

@@ -8,6 +8,7 @@
 
 #include "absl/status/status.h"
 #include "cartographer_sdf/live/log_run.h"
+#include "cartographer_sdf/report/run_description.h"
 
 namespace cartographer_sdf {
 
@@ -18,12 +19,13 @@ namespace cartographer_sdf {
 // - run.json: all numbers, see docs/live.md;
 // - nodes.csv: the pose estimate when each node was made;
 // - index.html: the final map with closures, and charts. Reads the grids of
-//   `map`, the final map.
+//   `map`, the final map. `run` is what the page says of the program.
 [[nodiscard]] absl::Status WriteRunReport(const std::string& directory,
                                           const std::string& log,
                                           const std::string& map,
                                           const LogRunOptions& options,
-                                          const LogRunResult& result);
+                                          const LogRunResult& result,
+                                          const RunDescription& run);
 
 }  // namespace cartographer_sdf
 

@@ -16,6 +16,7 @@
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/report/json.h"
+#include "cartographer_sdf/report/run_description.h"
 
 namespace cartographer_sdf {
 
@@ -55,6 +56,7 @@ enum class RunWarning {
 [[nodiscard]] const char* RunWarningCode(RunWarning warning);
 
 struct RunRecord {
+  RunDescription run;  // set before the run
   Outcome outcome = Outcome::kDone;
   // One sentence, unless kDone.
   std::string reason;

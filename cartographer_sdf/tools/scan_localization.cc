@@ -97,7 +97,8 @@ void RecordScans(Json results, RunRecord* const record) {
 // Prints the results, and writes the report of the single one.
 absl::StatusOr<Json> LocalizeFiles(const Options& options, const MapGrid& map,
                                    const PanoramaMap& panoramas,
-                                   const std::vector<ScanFile>& files) {
+                                   const std::vector<ScanFile>& files,
+                                   const RunDescription& run) {
   Json results = Json::array();
   for (const ScanFile& file : files) {
     const std::clock_t begin = std::clock();
@@ -110,9 +111,9 @@ absl::StatusOr<Json> LocalizeFiles(const Options& options, const MapGrid& map,
     results.back().update(ToJson(result));
     results.back()["cpu_milliseconds"] = milliseconds;
     if (FLAGS_report.empty()) continue;
-    const absl::Status status =
-        WriteScanReport(ReportRequestOfFlags(options), FileName(FLAGS_map),
-                        FileName(file.path), map.grid, file.scans, result);
+    const absl::Status status = WriteScanReport(
+        ReportRequestOfFlags(options, run), options.scan_localization,
+        FileName(FLAGS_map), FileName(file.path), map.grid, file.scans, result);
     if (!status.ok()) return status;
   }
   return results;
@@ -136,7 +137,7 @@ absl::Status RunScanLocalization(RunRecord* const record) {
         FLAGS_map, " has no wall, or no free space for a robot to stand in"));
   }
   absl::StatusOr<Json> results =
-      LocalizeFiles(*options, *map, *panoramas, *files);
+      LocalizeFiles(*options, *map, *panoramas, *files, record->run);
   if (!results.ok()) return results.status();
   RecordScans(*std::move(results), record);
   PrintPaths();

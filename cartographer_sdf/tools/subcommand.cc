@@ -68,12 +68,12 @@ int Fail(const std::string& invocation, const absl::Status& status) {
   return static_cast<int>(ExitCodeOf(status));
 }
 
-absl::Status CheckAndRun(const Subcommand& subcommand, RunRecord* const record,
-                         ResultFile* const result) {
+absl::Status CheckAndRun(const Subcommand& subcommand,
+                         RunRecord* const record) {
   absl::Status status;
   if (subcommand.check_flags != nullptr) status = subcommand.check_flags();
   if (status.ok()) status = CheckFiles(subcommand);
-  if (status.ok()) status = result->RecordInputs();
+  if (status.ok()) status = DescribeInputs(subcommand, &record->run);
   if (!status.ok()) return status;
   if (!WritesToStandardOutput(subcommand)) return subcommand.run(record);
   // A table has the standard output to itself.
@@ -105,8 +105,9 @@ int RunWithResult(const Subcommand& subcommand,
   if (status.ok()) status = CheckResultFile(subcommand);
   if (!status.ok()) return Fail(subcommand.Invocation(), status);
   RunRecord record;
-  ResultFile result(subcommand, arguments);
-  status = CheckAndRun(subcommand, &record, &result);
+  record.run = DescribeRun(subcommand, arguments);
+  const ResultFile result(subcommand);
+  status = CheckAndRun(subcommand, &record);
   RunEnd end = EndOf(subcommand, record, status);
   if (absl::Status written = result.Write(record, end);
       status.ok() && !written.ok()) {

@@ -142,12 +142,13 @@ TEST_F(AuditOptionEffectsTest, NoneOfReportsIsWithout) {
                         9.)});
   ReportOptions base;
   base.map_picture_pixels = 100;
-  base.closure_picture_pixels = 60;
-  base.max_closure_pictures = 1;
+  base.submap_picture_pixels = 60;
+  base.max_submap_pictures = 2;
   const std::vector<testing::Scenario<ReportOptions>> scenarios = {
       {"", [&](const ReportOptions& options) {
          const absl::Status status = WriteCloseLoopsReport(
-             {rooms_.directory().path(), options, ""}, "map", result,
+             {rooms_.directory().path(), options, ""}, LoopClosingOptions(),
+             "map", result,
              [this](const SubmapCallback& on_submap) {
                return ReadMap(rooms_.Path(), {on_submap, {}}).status();
              });

@@ -132,18 +132,32 @@ TEST(OptionsTest, ReadsWhatItWrites) {
   EXPECT_EQ(read->report.map_picture_pixels, 777);
 }
 
+TEST(OptionsTest, ListsWhatDiffersFromTheDefaults) {
+  EXPECT_TRUE(ChangedOptions(Options()).empty());
+  Options options;
+  options.report.map_picture_pixels = 777;
+  options.loop_closing.recognition.use_retrieval = false;
+  const std::vector<ChangedOption> changed = ChangedOptions(options);
+  ASSERT_EQ(changed.size(), 2u);
+  EXPECT_EQ(changed[0].name, "loop_closing.recognition.use_retrieval");
+  EXPECT_EQ(changed[0].value, "false");
+  EXPECT_EQ(changed[0].default_value, "true");
+  EXPECT_EQ(changed[1].name, "report.map_picture_pixels");
+  EXPECT_EQ(changed[1].value, "777");
+}
+
 TEST(OptionsTest, UsersOverrideTheShippedFile) {
   testing::TemporaryDirectory directory;
   directory.Write("mine.lua",
                   "include \"sdf_global_constraints.lua\"\n"
-                  "SDF_GLOBAL_CONSTRAINTS.report.max_closure_pictures = -1\n"
+                  "SDF_GLOBAL_CONSTRAINTS.report.max_submap_pictures = -1\n"
                   "return SDF_GLOBAL_CONSTRAINTS\n");
   const auto options =
       LoadOptions({directory.path(), kTestConfigurationDirectory}, "mine.lua");
   ASSERT_FALSE(options.ok());
   EXPECT_THAT(std::string(options.status().message()),
               HasSubstr("mine.lua: SDF_GLOBAL_CONSTRAINTS.report."
-                        "max_closure_pictures must not be negative"));
+                        "max_submap_pictures must not be negative"));
 }
 
 }  // namespace

@@ -115,28 +115,66 @@ TEST(MapPainterTest, SurvivesDegenerateMaps) {
   Picture picture = painter.Paint();
   EXPECT_LE(picture.height(), 200);
   EXPECT_LE(picture.width(), 200);
-  DrawMetricGrid(painter.frame(), &picture);
   DrawScaleBar(painter.frame(), &picture);
   DrawTrajectory({lost.translation(), far.translation()}, painter.frame(),
                  Color(), &picture);
   DrawTrajectory({}, painter.frame(), Color(), &picture);
-  DrawLink(lost.translation(), {0., 0.}, painter.frame(), Color(), &picture);
 }
 
 TEST(MapPainterTest, OverlaysLieWhereTheirPointsAre) {
   const MapPainter painter({{TestGeometry(), Rigid2()}}, 1000);
   Picture picture = painter.Paint();
   const Color red{1., 0., 0.};
-  const Color blue{0., 0., 1.};
   DrawTrajectory({{-2., 0.}, {2., 0.}}, painter.frame(), red, &picture);
-  DrawLink({0., -2.}, {0., -1.}, painter.frame(), blue, &picture);
   const DecodedPng png = DecodePng(picture.EncodePng());
   const Rgb on_line = PixelAt(png, painter.frame(), 1., 0.01);
   EXPECT_GT(on_line.red, on_line.green + 50);
   EXPECT_EQ(PixelAt(png, painter.frame(), -2., 0.), (Rgb{255, 255, 255}));
   EXPECT_EQ(PixelAt(png, painter.frame(), 2., 0.), (Rgb{255, 0, 0}));
-  EXPECT_EQ(PixelAt(png, painter.frame(), 0., -1.), (Rgb{0, 0, 255}));
   EXPECT_EQ(PixelAt(png, painter.frame(), 0., 1.), (Rgb{128, 128, 128}));
+}
+
+// Two painters of the same grids, each with one of two rooms.
+std::vector<MapPainter> TwoMaps(const Rigid2& T_map_second) {
+  const std::vector<PlacedGrid> grids = {{TestGeometry(), Rigid2()},
+                                         {TestGeometry(), T_map_second}};
+  std::vector<MapPainter> maps(2, MapPainter(grids, 1000));
+  maps[0].AddSubmap(TestRoom(), Rigid2());
+  maps[1].AddSubmap(TestRoom(), T_map_second);
+  return maps;
+}
+
+TEST(MapPainterTest, IndexedPicturesShowTheSame) {
+  const std::vector<MapPainter> maps = TwoMaps(Rigid2(20., 0., 0.));
+  const IndexedPicture picture = PaintIndexed(maps[0], kBlack);
+  const DecodedPng png = DecodePng(picture.EncodePng());
+  const PixelFrame& frame = maps[0].frame();
+  EXPECT_EQ(PixelAt(png, frame, 0., 0.), (Rgb{255, 255, 255}));
+  EXPECT_LT(PixelAt(png, frame, 3. + kWall / 2., 0.5).red, 90);
+  // Transparent where nothing is known.
+  const Eigen::Vector2d unknown = frame.ToPixels({10., 0.});
+  const auto index =
+      static_cast<size_t>(unknown.y()) * static_cast<size_t>(picture.width) +
+      static_cast<size_t>(unknown.x());
+  EXPECT_EQ(picture.pixels[index], 0);
+  EXPECT_EQ(picture.palette[0].alpha, 0);
+}
+
+TEST(MapPainterTest, OverlaidMapsHaveTheirColors) {
+  // A wall of the second stands in the middle of the first.
+  const std::vector<MapPainter> maps = TwoMaps(Rigid2(3., 0., 0.));
+  const DecodedPng png = DecodePng(PaintOverlaid(maps).EncodePng());
+  const PixelFrame& frame = maps[0].frame();
+  EXPECT_EQ(PixelAt(png, frame, -kWall / 2., 0.5), (Rgb{230, 26, 26}));
+  EXPECT_EQ(PixelAt(png, frame, -1.5, 0.), (Rgb{255, 255, 255}));
+  // The outer walls, each in its map's colour.
+  const Rgb first = PixelAt(png, frame, -3. - kWall / 2., 0.5);
+  const Rgb second = PixelAt(png, frame, 6. + kWall / 2., 0.5);
+  EXPECT_GT(first.blue, first.red + 100);
+  EXPECT_GT(second.red, second.blue + 100);
+  EXPECT_EQ(PixelAt(png, frame, 0., 2.4), (Rgb{128, 128, 128}));
+  EXPECT_GT(ConflictShare(maps), 0.2);
+  EXPECT_EQ(ConflictShare(TwoMaps(Rigid2(20., 0., 0.))), 0.);
 }
 
 }  // namespace

@@ -37,6 +37,12 @@ inline std::string MarkupError(const std::string& markup) {
       open.pop_back();
     } else if (tag.back() != '/') {
       open.push_back(name);
+      // Their contents are no markup.
+      if (name == "script" || name == "style") {
+        const size_t end = markup.find("</" + name, i);
+        if (end == std::string::npos) return "not closed: " + name;
+        i = end - 1;
+      }
     }
   }
   return open.empty() ? "" : "not closed: " + open.back();

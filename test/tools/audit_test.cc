@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/file/text_file.h"
+#include "cartographer_sdf/pbstream/map_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/open_counter.h"
@@ -86,6 +88,65 @@ TEST_F(AuditProgramTest, FindsWhatFalsifyAdded) {
   const ProgramResult again =
       RunTestProgram({"audit", "--input", File("mended.pbstream")});
   EXPECT_THAT(again.output, HasSubstr(" 0 of them doubtful"));
+}
+
+TEST_F(AuditProgramTest, DropsTheConstraintsOfAList) {
+  const auto wrong =
+      ReadCsv(File("wrong.csv"), {{"constraint", CsvType::kInteger}});
+  const auto before = ReadMap(File("bad.pbstream"));
+  ASSERT_TRUE(wrong.ok() && before.ok());
+  // Other columns, as in the file of --constraints, do not matter.
+  std::string list =
+      "constraint,verdict,submap_trajectory,submap_index,node_trajectory,"
+      "node_index\n";
+  for (const CsvRow& row : *wrong) {
+    const Constraint& constraint =
+        before->pose_graph.constraints[static_cast<size_t>(row.Integer(0))];
+    absl::StrAppend(&list, row.Integer(0), ",any,",
+                    constraint.submap.trajectory, ",", constraint.submap.index,
+                    ",", constraint.node.trajectory, ",", constraint.node.index,
+                    "\n");
+  }
+  const std::string drop = directory_->Write("drop.csv", list);
+  const ProgramResult result = RunTestProgram(
+      {"audit", "--input", File("bad.pbstream"), "--drop", drop, "--output",
+       File("dropped.pbstream"), "--report", File("dropped")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  EXPECT_THAT(result.output, HasSubstr(absl::StrCat(
+                                 wrong->size(), " constraints are dropped")));
+  const auto after = ReadMap(File("dropped.pbstream"));
+  ASSERT_TRUE(after.ok()) << after.status();
+  EXPECT_EQ(after->pose_graph.constraints.size() + wrong->size(),
+            before->pose_graph.constraints.size());
+}
+
+TEST_F(AuditProgramTest, SaysWhatIsWrongWithAList) {
+  const std::string header =
+      "constraint,submap_trajectory,submap_index,node_trajectory,node_index\n";
+  const std::vector<std::pair<std::string, std::string>> lists = {
+      {"", "is empty"},
+      {"constraint,submap_index\n1,2\n", "submap_trajectory"},
+      {header + "x,0,0,0,0\n", "not an integer"},
+      {header + "1,0,0,0\n", "4 fields instead of 5"},
+      {header + "-1,0,0,0,0\n", "must not be negative"},
+      {header + "99999999999999999999,0,0,0,0\n", "not an integer"},
+      {header + "2147483647,0,0,0,0\n", "made for another map"},
+      {header + "1,0,0,0,99999\n", "made for another map"},
+      {std::string("\0\xff\xfe,\n", 5), "columns named"}};
+  for (const auto& [content, problem] : lists) {
+    const std::string path = directory_->Write("list.csv", content);
+    const ProgramResult result =
+        RunTestProgram({"audit", "--input", File("bad.pbstream"), "--drop",
+                        path, "--output", File("none.pbstream")});
+    EXPECT_EQ(result.exit_code, 1) << content;
+    EXPECT_THAT(result.error, HasSubstr(problem)) << content;
+    EXPECT_FALSE(std::filesystem::exists(File("none.pbstream")));
+  }
+  const ProgramResult missing =
+      RunTestProgram({"audit", "--input", File("bad.pbstream"), "--drop",
+                      File("nowhere.csv")});
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.error, HasSubstr("nowhere.csv"));
 }
 
 TEST_F(AuditProgramTest, LeavesNothingBehindWhereItFails) {
