@@ -10,7 +10,7 @@ set -euo pipefail
 usage() {
   cat <<END
 usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [--ros]
-                                        [--documentation]
+                                        [--documentation] [--browser]
   --development  also what the static checks (clang-format, clang-tidy),
                  learning the score's weights (numpy), and the pictures of the
                  Python example (matplotlib) need
@@ -20,6 +20,7 @@ usage: scripts/install_dependencies.sh [--development] [--python] [--packages] [
   --ros          also what the nodes for ROS 1 and scripts/test_ros.sh need,
                  besides an installed cartographer_ros
   --documentation  also what scripts/build_site.sh needs
+  --browser      also what the test of reports in a browser needs
 END
 }
 
@@ -59,6 +60,7 @@ ROS_PACKAGES=(
 # The generator of the site, its theme, Markdown and buttons, and the comments of
 # headers.
 DOCUMENTATION_PACKAGES=(python3-sphinx furo python3-myst-parser python3-sphinx-copybutton doxygen)
+BROWSER_PACKAGES=(chromium chromium-driver python3-selenium)
 
 fail() {
   echo "install_dependencies.sh: $*" >&2
@@ -72,6 +74,7 @@ while (($# > 0)); do
     --packages) PACKAGES+=("${PACKAGING_PACKAGES[@]}") ;;
     --ros) PACKAGES+=("${ROS_PACKAGES[@]}") ;;
     --documentation) PACKAGES+=("${DOCUMENTATION_PACKAGES[@]}") ;;
+    --browser) PACKAGES+=("${BROWSER_PACKAGES[@]}") ;;
     -h | --help) usage && exit 0 ;;
     *) usage >&2 && exit 2 ;;
   esac
