@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/file/whole_file.h"
+#include "cartographer_sdf/localization/probability.h"
 #include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/reports.h"
 

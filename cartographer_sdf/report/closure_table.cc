@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
+#include "cartographer_sdf/localization/probability.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -83,10 +83,6 @@ int RankOf(const Tone tone) {
 }
 
 }  // namespace
-
-double ProbabilityOf(const double score) {
-  return 1. / (1. + std::exp(-score));
-}
 
 // Long: a list of all.
 std::vector<Measure> MatchMeasures(const JudgementOptions& judgement,

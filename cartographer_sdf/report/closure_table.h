@@ -27,9 +27,6 @@ constexpr char kJudgementPath[] =
     "loop_closing.recognition.match.verification.judgement";
 constexpr char kClosingPath[] = "loop_closing.closing";
 
-// 1 / (1 + exp(-score)).
-[[nodiscard]] double ProbabilityOf(double score);
-
 // `path` is that of the options of judgement.
 [[nodiscard]] std::vector<Measure> MatchMeasures(
     const JudgementOptions& judgement, const std::string& path);

@@ -8,6 +8,7 @@
 #define CARTOGRAPHER_SDF_REPORT_INSPECTION_H_
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -134,6 +135,13 @@ struct InspectedConstraint {
   bool is_dropped = false;  // from the last state
 };
 
+// Where a query differs from the map.
+struct InspectedChange {
+  std::string kind;         // "appeared", "vanished"
+  Eigen::AlignedBox2d box;  // map frame
+  double wall_area = 0.;    // [m^2]
+};
+
 struct Inspection {
   std::string title;
   Tone tone = Tone::kNeutral;
@@ -150,6 +158,7 @@ struct Inspection {
   std::vector<InspectedTable> tables;
   // By the indices that rows name, where constraints can be dropped.
   std::map<size_t, InspectedConstraint> constraints;
+  std::vector<InspectedChange> changes;
   // What a robot saw from where it stands, in its frame.
   std::vector<Eigen::Vector2d> echoes;
   std::vector<HistogramPlot> histograms;

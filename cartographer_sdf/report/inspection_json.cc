@@ -353,6 +353,20 @@ Json TablesJson(const Inspection& inspection) {
   return json;
 }
 
+// As in the file of --result.
+Json InspectedChangesJson(const Inspection& inspection) {
+  Json json = Json::array();
+  for (const InspectedChange& change : inspection.changes) {
+    json.push_back({{"kind", change.kind},
+                    {"x_min", Rounded(change.box.min().x(), 2)},
+                    {"y_min", Rounded(change.box.min().y(), 2)},
+                    {"x_max", Rounded(change.box.max().x(), 2)},
+                    {"y_max", Rounded(change.box.max().y(), 2)},
+                    {"wall_area", Rounded(change.wall_area, 3)}});
+  }
+  return json;
+}
+
 Json EchoesJson(const Inspection& inspection) {
   Json json = Json::array();
   for (const Eigen::Vector2d& echo : inspection.echoes) {
@@ -383,6 +397,7 @@ Json ToJson(const ReportRequest& request, const Inspection& inspection) {
                {"phases", inspection.phases.names},
                {"paths", PathWriter(inspection, T_map_states).Write()},
                {"tables", TablesJson(inspection)},
+               {"changes", InspectedChangesJson(inspection)},
                {"echoes", EchoesJson(inspection)}});
   return json;
 }

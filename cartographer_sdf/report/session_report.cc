@@ -9,6 +9,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/localization/changes.h"
+#include "cartographer_sdf/localization/probability.h"
 #include "cartographer_sdf/report/closure_table.h"
 #include "cartographer_sdf/report/reports.h"
 
@@ -81,23 +83,16 @@ MapState Moved(const Rigid2& T_picture_map, MapState state) {
 
 // --- relocalize. ---
 
-// Of each placement being right, given that rivals of the best one exclude each
-// other, and that none may be right. Others stand for themselves.
-std::vector<double> PlacementProbabilities(
-    const std::vector<Placement>& placements) {
-  // The best comes first: relative to it, nothing overflows.
-  const double best = placements.empty() ? 0. : placements.front().score;
-  double sum = std::exp(-best);  // none of them
-  for (size_t k = 0; k < placements.size(); ++k) {
-    if (k == 0 || placements[k].is_rival) {
-      sum += std::exp(placements[k].score - best);
-    }
-  }
+// Of each placement being right. The best one and a rival exclude each other;
+// others stand for themselves.
+std::vector<double> PlacementProbabilities(const Localization& result) {
   std::vector<double> probabilities;
-  for (size_t k = 0; k < placements.size(); ++k) {
-    probabilities.push_back(k == 0 || placements[k].is_rival
-                                ? std::exp(placements[k].score - best) / sum
-                                : ProbabilityOf(placements[k].score));
+  for (size_t k = 0; k < result.placements.size(); ++k) {
+    const Placement& placement = result.placements[k];
+    probabilities.push_back(
+        k == 0 ? ProbabilityOf(placement.score, result.runner_up_score)
+        : placement.is_rival ? ProbabilityOf(placement.score, result.score)
+                             : ProbabilityOf(placement.score));
   }
   return probabilities;
 }
@@ -112,8 +107,8 @@ std::vector<Measure> PlacementMeasures(const PlacementOptions& options) {
   const std::string path = absl::StrCat(kPlacementPath, ".");
   return {
       {"probability", "probability", "%", 2,
-       "Of being right, as the scores say: rivals exclude each other, and none "
-       "may be right.",
+       "Of being right, as the scores say: the best one and a rival exclude "
+       "each other.",
        true},
       {"score", "score", "", 2,
        "Log-odds: the evidence of the places that support it.", true,
@@ -144,8 +139,7 @@ InspectedTable PlacementTable(const PlacementOptions& options,
       "candidates", "Candidates",
       "Placements of the query; arrows show where its drive ended.",
       PlacementMeasures(options), PlacementStatuses()};
-  const std::vector<double> probabilities =
-      PlacementProbabilities(result.placements);
+  const std::vector<double> probabilities = PlacementProbabilities(result);
   for (size_t k = 0; k < std::min(result.placements.size(), kMaxCandidates);
        ++k) {
     const Placement& placement = result.placements[k];
@@ -246,16 +240,41 @@ InspectedTable VoteTable(const LoopClosingOptions& stages,
   return table;
 }
 
+// What changed since the map was made, and whether the query holds together.
+void AddChanges(const Localization& result, Inspection* const inspection) {
+  for (const Change& change : result.changes) {
+    inspection->changes.push_back(
+        {ChangeKindName(change.kind), change.box, change.wall_area});
+  }
+  if (!result.changes.empty()) {
+    inspection->remarks.push_back(absl::StrCat(
+        "Changed since the map was made: ", DescribeChanges(result.changes),
+        "."));
+  }
+  const size_t num_parts = result.parts.parts.size();
+  if (num_parts > 1) {
+    inspection->remarks.push_back(absl::StrFormat(
+        "The query lies in %d parts at poses of their own; it is drawn as one, "
+        "where the best part lies.",
+        num_parts));
+  }
+}
+
 void JudgeLocalization(const Session& map, const Session& query,
                        const Localization& result,
                        Inspection* const inspection) {
   if (result.T_map_query) {
     inspection->tone = Tone::kGood;
     inspection->verdict = absl::StrFormat(
-        "Localised: %s lies at %s in %s. %s, %d contradict.",
+        "Localised: %s lies at %s in %s, with a probability of %s. %s agree, "
+        "%d contradict.",
         FileName(query.path), FormatPose(*result.T_map_query),
-        FileName(map.path), Counted(result.num_agreeing, "match") + " agree",
+        FileName(map.path),
+        FormatProbability(
+            ProbabilityOf(result.score.value_or(0.), result.runner_up_score)),
+        Counted(static_cast<size_t>(result.num_agreeing), "matching pair"),
         result.num_contradicting);
+    AddChanges(result, inspection);
   } else {
     inspection->tone = Tone::kCaution;
     inspection->verdict =

@@ -184,6 +184,7 @@ absl::Status CheckFlagsOfAudit() {
 
 }  // namespace
 
+// Long: a description, with all flags.
 Subcommand AuditSubcommand() {
   Subcommand subcommand{
       "audit",

@@ -226,10 +226,10 @@ absl::Status WriteFiles(const MapTask& task, const Session& map,
                         RunRecord* const record) {
   absl::Status status;
   if (!FLAGS_report.empty()) {
-    status = WriteRelocalizationReport(ReportRequestOfFlags(task.options, record->run),
-                                       task.options.loop_closing,
-                                       task.options.localization, map, query,
-                                       result, progress->Begin("report"));
+    status = WriteRelocalizationReport(
+        ReportRequestOfFlags(task.options, record->run),
+        task.options.loop_closing, task.options.localization, map, query,
+        result, progress->Begin("report"));
   }
   if (status.ok() && !FLAGS_output.empty()) {
     status = WriteCombinedMap(task, map, query, result, progress, record);

@@ -52,7 +52,8 @@ TEST(ClosureTableTest, EveryOptionThatItNamesExists) {
     EXPECT_THAT(paths, Contains(measure.option)) << measure.name;
   }
   for (const RowStatus& status : table.statuses) {
-    if (!status.option.empty()) EXPECT_THAT(paths, Contains(status.option));
+    if (status.option.empty()) continue;
+    EXPECT_THAT(paths, Contains(status.option)) << status.name;
   }
 }
 

@@ -126,6 +126,21 @@ TEST(InspectionJsonTest, LongPathsAreThinnedButKeepTheirEnds) {
   EXPECT_EQ(positions.size(), json["paths"][0]["seconds"].size());
 }
 
+TEST(InspectionJsonTest, ChangesAreThoseOfTheFileOfResult) {
+  testing::InspectedRooms rooms;
+  rooms.inspection.changes = {
+      {"appeared",
+       Eigen::AlignedBox2d(Eigen::Vector2d(1., 2.), Eigen::Vector2d(3., 4.)),
+       0.5}};
+  EXPECT_EQ(ToJson(TestRequest(), rooms.inspection)["changes"],
+            Json::array({{{"kind", "appeared"},
+                          {"x_min", 1.},
+                          {"y_min", 2.},
+                          {"x_max", 3.},
+                          {"y_max", 4.},
+                          {"wall_area", 0.5}}}));
+}
+
 TEST(InspectionJsonTest, PhasesAreThoseOfTheNodes) {
   testing::InspectedRooms rooms;
   rooms.inspection.phases = {{"searching", "located"},

@@ -159,7 +159,7 @@ const canvas = byId("map");
 const view = {x: 0, y: 0, scale: 1, width: 1, height: 1};
 const shown = {
   sessions: run.sessions.map(() => true), conflicts: true, paths: true, pathColor: "trajectory",
-  statuses: new Set(), errors: false, candidates: true};
+  statuses: new Set(), errors: false, candidates: true, changes: true};
 const map = {images: [], conflicts: [], wipe: 50, wipeIsTouched: false};
 let selected = null, pointed = null, current = run.tables.length > 0 ? run.tables[0] : null;
 const statusKey = (row) => `${row.table.name}/${row.status}`;
@@ -504,8 +504,22 @@ function drawPointed(context, k) {
   }
 }
 
+// Solid: appeared; dashed: vanished.
+const CHANGES = {appeared: {color: "#c44e00", dash: []}, vanished: {color: "#0d3b8c", dash: [5, 4]}};
+function drawChanges(context) {
+  if (!shown.changes) return;
+  for (const change of run.changes) {
+    const look = CHANGES[change.kind] || CHANGES.appeared;
+    const margin = 0.15;
+    const corners = [[change.x_min - margin, change.y_min - margin], [change.x_max + margin, change.y_min - margin],
+                     [change.x_max + margin, change.y_max + margin], [change.x_min - margin, change.y_max + margin],
+                     [change.x_min - margin, change.y_min - margin]];
+    strokePath(context, corners.map(toScreen), look.color, look.dash, 2);
+  }
+}
 function drawState(context, k) {
   drawPictures(context, k);
+  if (k === lastState) drawChanges(context);
   drawSelection(context, k);
   drawPaths(context, k);
   drawErrors(context, k);
@@ -750,6 +764,14 @@ function listOthers() {
   if (run.submaps.some((submap) => submap.mean_errors.some((error) => error !== null) || submap.flaw)) {
     boxes.push(layerBox(`quality of submaps: mean error of constraints, dark and small 0, light and large ${
       largestError().toFixed(2)} m; ! torn`, false, (isOn) => { shown.errors = isOn; }));
+  }
+  for (const [kind, look] of run.changes.length > 0 ? Object.entries(CHANGES) : []) {
+    const number = run.changes.filter((change) => change.kind === kind).length;
+    boxes.push(make("span", {}, keyOf((context) => strokePath(
+      context, [[2, 2], [16, 2], [16, 16], [2, 16], [2, 2]], look.color, look.dash.map((d) => d / 2), 2)), `${kind} (${number})`));
+  }
+  if (run.changes.length > 0) {
+    boxes.push(layerBox("changed here", true, (isOn) => { shown.changes = isOn; }));
   }
   if (candidateRows().length > 0) {
     boxes.push(layerBox("candidates, with their probability", true, (isOn) => { shown.candidates = isOn; }));
