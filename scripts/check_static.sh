@@ -39,6 +39,13 @@ cd "${SOURCE_DIR}"
 wants() { [[ ",${only}," == *",$1,"* ]]; }
 step() { printf '\n=== %s\n' "$*"; }
 
+for check in clang:clang++ tidy:clang-tidy cppcheck:cppcheck; do
+  if wants "${check%%:*}" && ! command -v "${check##*:}" >/dev/null; then
+    echo "check_static.sh: needs ${check##*:}, of Debian's packages clang, clang-tidy and cppcheck" >&2
+    exit 1
+  fi
+done
+
 # Sources that are checked; headers by the sources that include them.
 if [[ -n "${since}" ]]; then
   mapfile -t files < <(git diff --name-only --diff-filter=d "${since}" -- '*.cc')
