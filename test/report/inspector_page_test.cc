@@ -119,11 +119,11 @@ TEST_F(InspectorPageTest, ShowsTheMainThingsWithoutJavaScript) {
   EXPECT_THAT(
       html,
       AllOf(HasSubstr("half of &lt;it&gt;"), HasSubstr("<td>97</td>"),
-            HasSubstr("cartographer_sdf close_loops 'a map.pbstream' "
+            HasSubstr("cartographer_sdf close_loops &#39;a map.pbstream&#39; "
                       "--output=b.pbstream"),
             HasSubstr("77 bytes, SHA-256 50b5e8a3"),
-            HasSubstr("Before: floor plan of 16 by 5 m"),
-            HasSubstr("After: floor plan of 16 by 5 m"), HasSubstr("<svg")));
+            HasSubstr("Before: floor plan of 15 by 5 m"),
+            HasSubstr("After: floor plan of 15 by 5 m"), HasSubstr("<svg")));
   const std::string prefix = "data:image/png;base64,";
   EXPECT_EQ(Count(html, prefix), 2);
   std::string png;

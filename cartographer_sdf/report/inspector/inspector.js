@@ -489,7 +489,7 @@ function drawPointed(context, k) {
   for (const row of [selected, pointed]) {
     if (!row) continue;
     // For programs that read the page, such as its test.
-    if (row === selected) canvas.dataset.selection = placesOf(row, lastState).map(toScreen).slice(0, 1).join();
+    if (row === selected) canvas.dataset.selection = JSON.stringify(placesOf(row, lastState).map(toScreen));
     if (isPair(row)) drawRow(context, row, k, 7);
     for (const place of placesOf(row, k)) {
       const [x, y] = toScreen(place);
