@@ -97,7 +97,7 @@ void AddClosingNumbers(const LoopClosingResult& result,
           return ClosureStatusName(closure.status) == status.name;
         });
     if (count > 0) {
-      numbers.emplace_back("Closures " + status.label, absl::StrCat(count));
+      numbers.emplace_back("Closures: " + status.label, absl::StrCat(count));
     }
   }
   numbers.emplace_back(
