@@ -108,7 +108,7 @@ ID_COLUMNS = ["reference_trajectory", "reference_index", "query_trajectory",
               "query_index"]
 DIFFERENT = "different buildings"
 # Log-odds from which on a match is accepted by default.
-THRESHOLD = 3.
+THRESHOLD = 4.
 CALIBRATION_EDGES = [0., .01, .05, .2, .5, .8, .95, .99, .999, 1.]
 
 
@@ -233,8 +233,49 @@ def calibration(predicted, right):
 # --- Report. ------------------------------------------------------------------
 
 
-def report(sets, penalty):
-    """Markdown: each building by the weights of the others, then all."""
+def reliability_plot(predicted, observed):
+    """An SVG drawing: of what is predicted with some probability, how much is
+    right. One line for each building, a thick one for all together."""
+    size, margin = 400, 50
+
+    def point(x, y):
+        return f"{margin + x * size:.1f},{margin + (1. - y) * size:.1f}"
+
+    def line(rows, style):
+        points = " ".join(point(row[3], row[4]) for row in rows)
+        return f'<polyline points="{points}" fill="none" {style}/>'
+    side = size + 2 * margin
+    parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {side} '
+             f'{side}" font-family="sans-serif" font-size="13">',
+             "<title>Reliability of the score, whole buildings left out"
+             "</title>",
+             f'<rect width="{side}" height="{side}" fill="white"/>',
+             f'<rect x="{margin}" y="{margin}" width="{size}" height="{size}" '
+             'fill="none" stroke="#888"/>',
+             f'<line x1="{margin}" y1="{margin + size}" x2="{margin + size}" '
+             f'y2="{margin}" stroke="#888" stroke-dasharray="4 4"/>']
+    for tick in (0., 0.25, 0.5, 0.75, 1.):
+        x, y = margin + tick * size, margin + (1. - tick) * size
+        parts += [f'<text x="{x}" y="{margin + size + 18}" '
+                  f'text-anchor="middle">{tick:g}</text>',
+                  f'<text x="{margin - 8}" y="{y + 4}" text-anchor="end">'
+                  f"{tick:g}</text>"]
+    parts += [f'<text x="{side / 2}" y="{side - 10}" text-anchor="middle">'
+              "predicted probability of being right</text>",
+              f'<text transform="translate(16 {side / 2}) rotate(-90)" '
+              'text-anchor="middle">fraction that is right</text>']
+    for group in predicted:
+        parts.append(line(calibration(predicted[group], observed[group]),
+                          'stroke="#0072b2" stroke-opacity="0.35"'))
+    rows = calibration(np.concatenate(list(predicted.values())),
+                       np.concatenate(list(observed.values())))
+    parts.append(line(rows, 'stroke="#d55e00" stroke-width="3"'))
+    return "\n".join([*parts, "</svg>"]) + "\n"
+
+
+def report(sets, penalty, plot=None):
+    """Markdown: each building by the weights of the others, then all. With
+    `plot`, also writes the reliability plot to that file."""
     names = sets[0].names
     lines = ["# Weights of the score", "",
              f"{len(sets)} data sets, {len(names)} terms, L2 penalty "
@@ -278,10 +319,20 @@ def report(sets, penalty):
               "lies in a range, and how many of them are right.", "",
               "| building | predicted | answers | mean predicted | observed |",
               "| --- | --- | --- | --- | --- |"]
-    for group in predicted:
-        for low, high, count, mean, fraction in calibration(
-                np.concatenate(predicted[group]),
-                np.concatenate(observed[group])):
+    predicted = {group: np.concatenate(values)
+                 for group, values in predicted.items()}
+    observed = {group: np.concatenate(values)
+                for group, values in observed.items()}
+    if plot:
+        plot.write_text(reliability_plot(predicted, observed),
+                        encoding="utf-8")
+    everything = {"all": (np.concatenate(list(predicted.values())),
+                          np.concatenate(list(observed.values())))}
+    for group, (guesses, truth) in {
+            **everything,
+            **{name: (predicted[name], observed[name])
+               for name in predicted}}.items():
+        for low, high, count, mean, fraction in calibration(guesses, truth):
             lines.append(f"| {group} | {low:g} to {high:g} | {count} | "
                          f"{mean:.4f} | {fraction:.4f} |")
     weights, bias = fit_sets(sets, penalty)
@@ -520,6 +571,8 @@ def main():
                         help="0: as many as there are cores")
     parser.add_argument("--neighbours", action="store_true",
                         help="learn the score in the neighbourhood")
+    parser.add_argument("--plot", type=pathlib.Path,
+                        help="SVG file to draw the reliability to")
     parser.add_argument("--penalty", type=float,
                         help="of the L2 regularisation; by default "
                              f"{PENALTY:g}, with --neighbours "
@@ -544,7 +597,7 @@ def main():
             sets += make_simulated_answers(workshop, arguments.simulated)
             if not sets:
                 raise Failure("there is not one data set")
-            print(report(sets, arguments.penalty), end="")
+            print(report(sets, arguments.penalty, arguments.plot), end="")
         except (Failure, OSError, ValueError, KeyError,
                 StopIteration) as failure:
             tell(f"learn_score.py: {failure}")

@@ -257,12 +257,12 @@ absl::Status RunOnce(const MapTask& task,
                  task.executor, progress->Callback());
   const Session map_session{FLAGS_map, std::move(map), {}};
   RecordAnswer(map_session, *query, result, record);
-  const absl::Status status =
-      WriteFiles(task, map_session, *query, result, progress, record);
-  if (!status.ok()) return status;
   PrintRepair(map_session.map.state);
   PrintRepair(query->map.state);
   PrintSummary(result);
+  const absl::Status status =
+      WriteFiles(task, map_session, *query, result, progress, record);
+  if (!status.ok()) return status;
   PrintPaths();
   return absl::OkStatus();
 }

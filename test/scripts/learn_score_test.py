@@ -11,6 +11,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 
 try:
     import numpy as np
@@ -193,11 +194,17 @@ class ReportTest(unittest.TestCase):
                 make_answers("y", [(0., 1, 99), (5., 99, 1)]),
                 make_answers("z", [(0., 90, 10), (5., 10, 90)]),
                 make_answers("w in x", [(0., 0, 50)], query_building="w")]
-        text = learn_score.report(sets, 1e-6)
+        with tempfile.TemporaryDirectory() as directory:
+            plot = pathlib.Path(directory) / "plot.svg"
+            text = learn_score.report(sets, 1e-6, plot)
+            lines = list(xml.etree.ElementTree.parse(plot).getroot().iter(
+                "{http://www.w3.org/2000/svg}polyline"))
+        # One for each building, one for strangers, and one for all.
+        self.assertEqual(len(lines), 5)
         rows = {line.split(" | ")[0][2:]: line.split(" | ")[1:]
                 for line in text.splitlines() if line.startswith("| ")}
         lines = [line for line in text.splitlines() if line.startswith("| z ")]
-        # answers, right, wrong, recalls, wrong above 3, right above 3
+        # answers, right, wrong, recalls, wrong above 4, right above 4
         self.assertEqual(lines[0], "| z | 200 | 100 | 100 | 0.000 | 0.000 | "
                          "90 | 10 |")
         # Once z takes part, none is that certain any more.
