@@ -489,6 +489,35 @@ SDF_GLOBAL_CONSTRAINTS = {
       bias = -7.5,
     },
   },
+  -- Localisation of a robot that drives, by scans with odometry (relocalize
+  -- --scan of a drive).
+  scan_session = {
+    -- [m], [rad] How far the robot drives or turns from one scan that is
+    -- compared with the map, a look, to the next. Smaller: slower.
+    look_distance_meters = 0.5,
+    look_rotation = 0.5,
+    -- Latest looks that count. Larger: slower.
+    max_num_looks = 20,
+    -- While the robot is searched for, the whole map is searched at the first
+    -- look and after so many, then after twice and four times as many. Smaller:
+    -- slower, found sooner.
+    num_looks_per_search = 4,
+    -- [m], [rad] Driving or turning so far shows as much new as another scan.
+    -- Larger: fewer answers, fewer wrong ones.
+    independent_distance_meters = 3.,
+    independent_rotation = 6.,
+    -- Added to presence_weights.bias and .lead above, times the logarithm of
+    -- the number of such scans. Learned, as those.
+    presence_bias_per_log = 0.5,
+    presence_lead_per_log = 5.,
+    -- Once the robot is located: a scan contradicts the pose if a larger
+    -- fraction of its beams crosses walls or ends in free space.
+    max_contradicting_fraction = 0.5,
+    -- [s] The robot is lost if all scans of this time, and so many, contradict.
+    -- Larger: a robot that was carried away is noticed later.
+    lost_after_seconds = 2.,
+    lost_after_scans = 5,
+  },
   -- Detection of merged maps that fold over each other (merge).
   fold_check = {
     -- Submaps contradict each other if a larger fraction of their walls lies in

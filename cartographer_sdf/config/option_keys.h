@@ -376,6 +376,20 @@ inline void VisitOptions(OptionVisitor& visit,
   visit("min_probability", options.min_probability);
 }
 
+inline void VisitOptions(OptionVisitor& visit, ScanSessionOptions& options) {
+  visit("look_distance_meters", options.look_distance_meters);
+  visit("look_rotation", options.look_rotation);
+  visit("max_num_looks", options.max_num_looks);
+  visit("num_looks_per_search", options.num_looks_per_search);
+  visit("independent_distance_meters", options.independent_distance_meters);
+  visit("independent_rotation", options.independent_rotation);
+  visit("presence_bias_per_log", options.presence_bias_per_log);
+  visit("presence_lead_per_log", options.presence_lead_per_log);
+  visit("max_contradicting_fraction", options.max_contradicting_fraction);
+  visit("lost_after_seconds", options.lost_after_seconds);
+  visit("lost_after_scans", options.lost_after_scans);
+}
+
 inline void VisitOptions(OptionVisitor& visit, FoldCheckOptions& options) {
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
@@ -392,6 +406,7 @@ inline void VisitOptions(OptionVisitor& visit, Options& options) {
   visit("localization", options.localization);
   visit("scan_places", options.scan_places);
   visit("scan_localization", options.scan_localization);
+  visit("scan_session", options.scan_session);
   visit("fold_check", options.fold_check);
   visit("audit", options.audit);
   visit("report", options.report);

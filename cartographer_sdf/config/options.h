@@ -16,6 +16,7 @@
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/report/report_options.h"
 
 namespace cartographer_sdf {
@@ -28,6 +29,7 @@ struct Options {
   LocalizationOptions localization;
   ScanPlaceOptions scan_places;
   ScanLocalizationOptions scan_localization;
+  ScanSessionOptions scan_session;
   FoldCheckOptions fold_check;
   AuditOptions audit;
   ReportOptions report;

@@ -32,6 +32,14 @@ struct RobotScan {
   Scan scan;
 };
 
+// What the sensors of a robot see at one time.
+struct OdometryScan {
+  double time = 0.;  // [s], of any origin
+  // Of wheels or of local SLAM; drifts.
+  Rigid2 T_odometry_robot;
+  std::vector<RobotScan> scans;
+};
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_GRID_SCAN_H_

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/localization/scan_places.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "cartographer_sdf/grid/scan_grid.h"
@@ -170,6 +171,31 @@ ScanMap DescribeScans(const ScanPlaceOptions& options,
   scan_map.map.places =
       DescribePlaces(place_options, match_options, scan_map.grids, executor);
   return scan_map;
+}
+
+std::vector<OdometryScan> OdometryScansOf(const DescribedMap& map,
+                                          const int trajectory) {
+  std::vector<OdometryScan> scans;
+  for (const auto& [id, node] : map.state.pose_graph.nodes) {
+    const auto cloud = map.point_clouds.find(id);
+    if (id.trajectory != trajectory || cloud == map.point_clouds.end()) {
+      continue;
+    }
+    // (node <- robot)
+    const Rigid2 T_node_robot =
+        Project2D(Rigid3::Rotation(node.gravity_alignment));
+    RobotScan scan;
+    for (const Eigen::Vector2f& p_node : cloud->second) {
+      scan.scan.returns.push_back(
+          (T_node_robot.Inverse() * Eigen::Vector2d(p_node.cast<double>()))
+              .cast<float>());
+    }
+    scans.push_back(
+        {static_cast<double>(node.time) / static_cast<double>(kTicksPerSecond),
+         SmoothPose(node) * T_node_robot,
+         {std::move(scan)}});
+  }
+  return scans;
 }
 
 }  // namespace cartographer_sdf

@@ -12,7 +12,9 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "cartographer_sdf/grid/scan.h"
 #include "cartographer_sdf/place_store/described_map.h"
 
 namespace cartographer_sdf {
@@ -52,6 +54,12 @@ struct ScanMap {
     const MatchOptions& match_options, const DescribedMap& map,
     const TimeWindow& window, const Executor& executor,
     const std::optional<std::set<int>>& trajectories = {});
+
+// Returns the scans of the trajectory's nodes in the robot's (tracking) frame,
+// with the poses of local SLAM as odometry, in time order. `map` must have its
+// point clouds.
+[[nodiscard]] std::vector<OdometryScan> OdometryScansOf(const DescribedMap& map,
+                                                        int trajectory);
 
 }  // namespace cartographer_sdf
 

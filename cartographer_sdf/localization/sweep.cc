@@ -101,4 +101,10 @@ Sweep MakeSweep(const std::vector<RobotScan>& scans, const int num_directions,
   return sweep;
 }
 
+int NumEchoes(const Sweep& sweep) {
+  return static_cast<int>(
+      std::count_if(sweep.beams.begin(), sweep.beams.end(),
+                    [](const RobotBeam& beam) { return beam.has_echo; }));
+}
+
 }  // namespace cartographer_sdf

@@ -39,6 +39,8 @@ struct Sweep {
 [[nodiscard]] Sweep MakeSweep(const std::vector<RobotScan>& scans,
                               int num_directions, double max_range);
 
+[[nodiscard]] int NumEchoes(const Sweep& sweep);
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_LOCALIZATION_SWEEP_H_

@@ -4,6 +4,7 @@
 // No option of localising, by matches and by a scan, of drawing places from
 // scans and of looking for folds in merged maps is without effect.
 
+#include <algorithm>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "gtest/gtest.h"
 #include "test/testing/divided_hall.h"
 #include "test/testing/drawn_map.h"
@@ -221,6 +223,59 @@ TEST(ScanLocalizationOptionEffectsTest, NoneIsWithout) {
        }}};
   ScanLocalizationOptions base;
   base.min_probability = 0.6;
+  EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
+}
+
+// A drive of half a metre a scan straight ahead, and then one scan a second in
+// another room; what each scan tells.
+std::string FollowDrive(const ScanSessionOptions& options,
+                        const PanoramaMap& map, const double field_of_view) {
+  ScanLocalizationOptions localization;
+  localization.min_probability = 0.9;
+  ScanSession session(localization, options, map);
+  std::string text;
+  for (int k = 0; k < 24; ++k) {
+    const bool is_carried = k >= 14;
+    const Rigid2 T_odometry_robot(0.3 * std::min(k, 9), 0.,
+                                  0.3 * std::max(0, std::min(k, 13) - 9));
+    const Rigid2 T_world_robot = is_carried
+                                     ? Rigid2(12.2, 3.1, 1.)
+                                     : Rigid2(1.8, 1.8, 0.1) * T_odometry_robot;
+    const SessionAnswer& answer =
+        session.Add({static_cast<double>(k),
+                     T_odometry_robot,
+                     {testing::Narrowed(
+                         testing::ScanFrom(testing::TwoRooms(), T_world_robot),
+                         field_of_view)}});
+    text += Text(answer.localization) + SearchStateName(answer.state) +
+            ScanUseName(answer.use);
+  }
+  return text;
+}
+
+TEST(ScanSessionOptionEffectsTest, NoneIsWithout) {
+  const auto map = MakePanoramaMap({}, testing::TwoRoomsGrid(), {});
+  ASSERT_TRUE(map.has_value());
+  const std::vector<testing::Scenario<ScanSessionOptions>> scenarios = {
+      {"",
+       [&](const ScanSessionOptions& options) {
+         return FollowDrive(options, *map, 0.8);
+       }},
+      {"max_contradicting_fraction",
+       [&](const ScanSessionOptions& options) {
+         return FollowDrive(options, *map, 7.);
+       }},
+      {"lost_after_seconds",
+       [&](const ScanSessionOptions& options) {
+         return FollowDrive(options, *map, 7.);
+       }},
+      {"lost_after_scans", [&](const ScanSessionOptions& options) {
+         ScanSessionOptions at_once = options;
+         at_once.lost_after_seconds = 0.;
+         return FollowDrive(at_once, *map, 7.);
+       }}};
+  ScanSessionOptions base;
+  base.max_num_looks = 4;
   EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
 }
 

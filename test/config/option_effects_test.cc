@@ -293,7 +293,8 @@ class UntestedOptions : public OptionVisitor {
         // closing_option_effects_test.cc
         "loop_closing.closing",
         // localization_option_effects_test.cc
-        "localization", "scan_places", "scan_localization", "fold_check",
+        "localization", "scan_places", "scan_localization", "scan_session",
+        "fold_check",
         // audit_option_effects_test.cc
         "audit", "report"};
     if (tested.count(path) > 0) return false;
