@@ -24,14 +24,15 @@ constexpr char kKind[] = "cartographer_sdf places";
 constexpr int kVersion = 2;
 
 absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
+                         const int version,
                          const proto::place_index::Header& header) {
   const auto refuse = [&path](const absl::string_view problem) {
     return absl::FailedPreconditionError(absl::StrCat(path, " ", problem));
   };
   if (header.kind() != kKind) return refuse("is not a place file");
-  if (header.version() != kVersion) {
+  if (header.version() != version) {
     return refuse(absl::StrCat("has places of version ", header.version(),
-                               ", not ", kVersion));
+                               ", not ", version));
   }
   if (header.map_hash() != key.map_hash || header.map_size() != key.map_size) {
     return refuse("has the places of another map");
@@ -307,6 +308,29 @@ absl::StatusOr<PlaceFileKey> MakePlaceFileKey(const std::string& map_path,
   return key;
 }
 
+std::string EncodePlaceFileHeader(const PlaceFileKey& key, const int version,
+                                  const int num_records) {
+  proto::place_index::Header header;
+  header.set_kind(kKind);
+  header.set_version(version);
+  header.set_map_hash(key.map_hash);
+  header.set_map_size(key.map_size);
+  header.set_options(key.options);
+  header.set_num_places(num_records);
+  return header.SerializeAsString();
+}
+
+absl::Status CheckPlaceFileHeader(const std::string& path,
+                                  const PlaceFileKey& key, const int version,
+                                  const std::string& record) {
+  proto::place_index::Header header;
+  if (!header.ParseFromString(record)) {
+    return absl::DataLossError(
+        absl::StrCat(path, " is corrupted: it has no header of a place file"));
+  }
+  return CheckHeader(path, key, version, header);
+}
+
 bool IsPlaceFile(const std::string& path) {
   absl::StatusOr<RecordReader> reader = RecordReader::Open(path);
   std::string record;
@@ -319,14 +343,8 @@ absl::Status WritePlaces(const std::string& path, const PlaceFileKey& key,
                          const std::map<SubmapId, Place>& places) {
   absl::StatusOr<RecordWriter> writer = RecordWriter::Open(path);
   if (!writer.ok()) return writer.status();
-  proto::place_index::Header header;
-  header.set_kind(kKind);
-  header.set_version(kVersion);
-  header.set_map_hash(key.map_hash);
-  header.set_map_size(key.map_size);
-  header.set_options(key.options);
-  header.set_num_places(static_cast<int>(places.size()));
-  absl::Status status = writer->Write(header.SerializeAsString());
+  absl::Status status = writer->Write(
+      EncodePlaceFileHeader(key, kVersion, static_cast<int>(places.size())));
   for (const auto& [id, place] : places) {
     if (status.ok()) status = writer->Write(EncodePlace(place));
   }
@@ -348,7 +366,7 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadPlaces(const std::string& path,
   if (!*has_record || !header.ParseFromString(record)) {
     return reader->Corrupted("is not the header of a place file");
   }
-  const absl::Status status = CheckHeader(path, key, header);
+  const absl::Status status = CheckHeader(path, key, kVersion, header);
   if (!status.ok()) return status;
   absl::StatusOr<std::map<SubmapId, Place>> places = ReadRecords(&*reader);
   if (!places.ok()) return places.status();

@@ -33,6 +33,15 @@ struct PlaceFileKey {
 [[nodiscard]] absl::StatusOr<PlaceFileKey> MakePlaceFileKey(
     const std::string& map_path, const std::string& options);
 
+// The first record of a file that belongs to a map, and its problem when it is
+// read: FailedPrecondition as of ReadPlaces.
+[[nodiscard]] std::string EncodePlaceFileHeader(const PlaceFileKey& key,
+                                                int version, int num_records);
+[[nodiscard]] absl::Status CheckPlaceFileHeader(const std::string& path,
+                                                const PlaceFileKey& key,
+                                                int version,
+                                                const std::string& record);
+
 // Whether it is a place file, of whatever map; false if it cannot be read.
 [[nodiscard]] bool IsPlaceFile(const std::string& path);
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -16,6 +18,40 @@ constexpr int kMinSamples = 4;
 constexpr int kMaxSamples = 1200;
 // Absorbs binary rounding, so that 0.2 s gives four samples and not five.
 constexpr double kRounding = 1e-6;
+
+// Ranges this near to the greatest are the same [m].
+constexpr double kSameSilentRange = 0.01;
+constexpr size_t kBeamsPerSilentBeam = 1000;
+
+// From this range on, beams met nothing; infinite if no beam says so. And the
+// greatest range below.
+struct SilentRange {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest_echo = 0.;
+};
+
+SilentRange FindSilentRange(const Recording& recording) {
+  double greatest = 0.;
+  for (const LaserScan& scan : recording.scans) {
+    for (const double range : scan.ranges) greatest = std::max(greatest, range);
+  }
+  SilentRange silent;
+  size_t num_beams = 0, num_greatest = 0;
+  for (const LaserScan& scan : recording.scans) {
+    num_beams += scan.ranges.size();
+    for (const double range : scan.ranges) {
+      if (range >= greatest - kSameSilentRange) {
+        ++num_greatest;
+      } else {
+        silent.greatest_echo = std::max(silent.greatest_echo, range);
+      }
+    }
+  }
+  if (num_greatest > 1 && num_greatest * kBeamsPerSilentBeam >= num_beams) {
+    silent.least = greatest - kSameSilentRange;
+  }
+  return silent;
+}
 
 }  // namespace
 
@@ -68,6 +104,29 @@ std::vector<double> MetersDriven(const Recording& recording) {
     distances.push_back(sum);
   }
   return distances;
+}
+
+std::vector<OdometryScan> OdometryScansOf(const Recording& recording) {
+  const SilentRange silent = FindSilentRange(recording);
+  std::vector<OdometryScan> scans;
+  for (const LaserScan& laser_scan : recording.scans) {
+    RobotScan scan;
+    for (size_t i = 0; i < laser_scan.ranges.size(); ++i) {
+      const double range = laser_scan.ranges[i];
+      const double angle = recording.first_angle +
+                           static_cast<double>(i) * recording.angle_increment;
+      const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+      if (range >= silent.least) {
+        scan.scan.misses.push_back(
+            (silent.greatest_echo * direction).cast<float>());
+      } else {
+        scan.scan.returns.push_back((range * direction).cast<float>());
+      }
+    }
+    scans.push_back(
+        {laser_scan.time, laser_scan.T_odometry_robot, {std::move(scan)}});
+  }
+  return scans;
 }
 
 }  // namespace cartographer_sdf

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cartographer_sdf/geometry/rigid2.h"
+#include "cartographer_sdf/grid/scan.h"
 
 namespace cartographer_sdf {
 
@@ -62,6 +63,12 @@ struct MotionSample {
 
 // Returns the length of the odometry path [m] up to each scan.
 [[nodiscard]] std::vector<double> MetersDriven(const Recording& recording);
+
+// Returns the scans as points. The range that a scanner reports where it met
+// nothing is the greatest of the recording, if one in a thousand beams and more
+// have it: such beams met nothing up to the greatest other range.
+[[nodiscard]] std::vector<OdometryScan> OdometryScansOf(
+    const Recording& recording);
 
 }  // namespace cartographer_sdf
 

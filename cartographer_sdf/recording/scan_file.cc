@@ -57,19 +57,25 @@ absl::StatusOr<double> NumberOf(const std::string& path, const ScanJson& object,
   return member->get<double>();
 }
 
-absl::StatusOr<Rigid2> SensorOf(const std::string& path, const ScanJson& scan) {
-  const auto sensor = scan.find("sensor");
-  if (sensor == scan.end()) return Rigid2();
-  if (!sensor->is_object()) {
-    return ScanFileError(path, "\"sensor\" is not an object with x, y and yaw");
+// A member that is a pose; none if there is no such member.
+absl::StatusOr<std::optional<Rigid2>> PoseMember(const std::string& path,
+                                                 const ScanJson& object,
+                                                 const char* const name) {
+  const auto member = object.find(name);
+  if (member == object.end()) return std::nullopt;
+  if (!member->is_object()) {
+    return ScanFileError(
+        path,
+        absl::StrCat("\"", name, "\" is not an object with x, y and yaw"));
   }
   double values[3];
   const char* const names[3] = {"x", "y", "yaw"};
   for (int k = 0; k < 3; ++k) {
-    const absl::StatusOr<double> value = NumberOf(path, *sensor, names[k], 0.);
+    const absl::StatusOr<double> value = NumberOf(path, *member, names[k], 0.);
     if (!value.ok()) return value.status();
     if (std::abs(*value) > kMaxScanCoordinate) {
-      return ScanFileError(path, "the pose of a sensor is absurd");
+      return ScanFileError(path,
+                           absl::StrCat("the pose \"", name, "\" is absurd"));
     }
     values[k] = *value;
   }
@@ -156,12 +162,27 @@ absl::StatusOr<Scan> ScanOfRanges(const std::string& path,
   return scan;
 }
 
-absl::StatusOr<RobotScan> ScanOfJson(const std::string& path,
-                                     const ScanJson& object) {
+// What a file says of a scan.
+struct ScanOfFile {
+  RobotScan scan;
+  std::optional<Rigid2> T_odometry_robot;
+  double time = 0.;  // only with odometry
+};
+
+absl::StatusOr<ScanOfFile> ScanOfJson(const std::string& path,
+                                      const ScanJson& object) {
   if (!object.is_object())
     return ScanFileError(path, "a scan is not an object");
-  const absl::StatusOr<Rigid2> sensor = SensorOf(path, object);
+  const absl::StatusOr<std::optional<Rigid2>> sensor =
+      PoseMember(path, object, "sensor");
   if (!sensor.ok()) return sensor.status();
+  const absl::StatusOr<std::optional<Rigid2>> odometry =
+      PoseMember(path, object, "odometry");
+  if (!odometry.ok()) return odometry.status();
+  const absl::StatusOr<double> time =
+      odometry->has_value() ? NumberOf(path, object, "time", std::nullopt)
+                            : absl::StatusOr<double>(0.);
+  if (!time.ok()) return time.status();
   const auto ranges = object.find("ranges");
   const auto points = object.find("points");
   if ((ranges == object.end()) == (points == object.end())) {
@@ -171,11 +192,12 @@ absl::StatusOr<RobotScan> ScanOfJson(const std::string& path,
                                   ? ScanOfRanges(path, object, *ranges)
                                   : ScanOfPoints(path, *points);
   if (!scan.ok()) return scan.status();
-  return RobotScan{*sensor, *std::move(scan)};
+  return ScanOfFile{
+      {sensor->value_or(Rigid2()), *std::move(scan)}, *odometry, *time};
 }
 
-absl::StatusOr<std::vector<RobotScan>> ScansOfJson(const std::string& path,
-                                                   const std::string& text) {
+absl::StatusOr<std::vector<ScanOfFile>> ScansOfJson(const std::string& path,
+                                                    const std::string& text) {
   // As Python writes them; JSON knows neither.
   const std::string plain = absl::StrReplaceAll(
       text, {{"-Infinity", "null"}, {"Infinity", "1e300"}, {"NaN", "null"}});
@@ -186,9 +208,9 @@ absl::StatusOr<std::vector<RobotScan>> ScansOfJson(const std::string& path,
   const ScanJson& content = has_list ? json["scans"] : json;
   const ScanJson list =
       content.is_array() ? content : ScanJson::array({content});
-  std::vector<RobotScan> scans;
+  std::vector<ScanOfFile> scans;
   for (const ScanJson& object : list) {
-    absl::StatusOr<RobotScan> scan = ScanOfJson(path, object);
+    absl::StatusOr<ScanOfFile> scan = ScanOfJson(path, object);
     if (!scan.ok()) return scan.status();
     scans.push_back(*std::move(scan));
   }
@@ -197,8 +219,8 @@ absl::StatusOr<std::vector<RobotScan>> ScansOfJson(const std::string& path,
 
 // --- CSV. ---
 
-absl::StatusOr<std::vector<RobotScan>> ScansOfCsv(const std::string& path,
-                                                  const bool has_points) {
+absl::StatusOr<std::vector<ScanOfFile>> ScansOfCsv(const std::string& path,
+                                                   const bool has_points) {
   const absl::StatusOr<std::vector<CsvRow>> rows =
       ReadCsv(path, {{has_points ? "x" : "angle", CsvType::kNumber},
                      {has_points ? "y" : "range", CsvType::kNumber}});
@@ -215,10 +237,10 @@ absl::StatusOr<std::vector<RobotScan>> ScansOfCsv(const std::string& path,
       scan.scan.returns.push_back(PointAt(a, b));
     }
   }
-  return std::vector<RobotScan>{std::move(scan)};
+  return std::vector<ScanOfFile>{{std::move(scan), std::nullopt, 0.}};
 }
 
-absl::StatusOr<std::vector<RobotScan>> ReadAnyScans(const std::string& path) {
+absl::StatusOr<std::vector<ScanOfFile>> ReadAnyScans(const std::string& path) {
   std::error_code error;
   const uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > kMaxScanFileSize) {
@@ -236,20 +258,68 @@ absl::StatusOr<std::vector<RobotScan>> ReadAnyScans(const std::string& path) {
   return ScansOfJson(path, text);
 }
 
-}  // namespace
-
-absl::StatusOr<std::vector<RobotScan>> ReadScanFile(const std::string& path) {
-  absl::StatusOr<std::vector<RobotScan>> scans = ReadAnyScans(path);
-  if (!scans.ok()) return scans;
+absl::Status CheckNumBeams(const std::string& path,
+                           const std::vector<ScanOfFile>& scans) {
   size_t num_beams = 0;
-  for (const RobotScan& scan : *scans) {
-    num_beams += scan.scan.returns.size() + scan.scan.misses.size();
+  for (const ScanOfFile& scan : scans) {
+    num_beams += scan.scan.scan.returns.size() + scan.scan.scan.misses.size();
   }
   if (num_beams == 0) return ScanFileError(path, "there is no beam in it");
   if (num_beams > kMaxNumBeams) {
     return ScanFileError(path, "scans have at most a million beams");
   }
-  return scans;
+  return absl::OkStatus();
+}
+
+// Scans with the same time belong together.
+absl::StatusOr<std::vector<OdometryScan>> DriveOf(
+    const std::string& path, std::vector<ScanOfFile> scans) {
+  std::vector<OdometryScan> drive;
+  for (ScanOfFile& scan : scans) {
+    if (!scan.T_odometry_robot) {
+      return ScanFileError(path,
+                           "some scans have \"odometry\", and others have not");
+    }
+    if (drive.empty() || drive.back().time != scan.time) {
+      drive.push_back({scan.time, *scan.T_odometry_robot, {}});
+    }
+    drive.back().scans.push_back(std::move(scan.scan));
+  }
+  return drive;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<RobotScan>> ReadScanFile(const std::string& path) {
+  absl::StatusOr<std::vector<ScanOfFile>> scans = ReadAnyScans(path);
+  if (!scans.ok()) return scans.status();
+  const absl::Status status = CheckNumBeams(path, *scans);
+  if (!status.ok()) return status;
+  std::vector<RobotScan> robot_scans;
+  for (ScanOfFile& scan : *scans) robot_scans.push_back(std::move(scan.scan));
+  return robot_scans;
+}
+
+absl::StatusOr<ScanRecording> ReadScanRecording(const std::string& path) {
+  absl::StatusOr<std::vector<ScanOfFile>> scans = ReadAnyScans(path);
+  if (!scans.ok()) return scans.status();
+  const absl::Status status = CheckNumBeams(path, *scans);
+  if (!status.ok()) return status;
+  if (!scans->front().T_odometry_robot) {
+    OdometryScan standing;
+    for (ScanOfFile& scan : *scans) {
+      if (scan.T_odometry_robot) {
+        return ScanFileError(
+            path, "some scans have \"odometry\", and others have not");
+      }
+      standing.scans.push_back(std::move(scan.scan));
+    }
+    return ScanRecording{false, {std::move(standing)}};
+  }
+  absl::StatusOr<std::vector<OdometryScan>> drive =
+      DriveOf(path, *std::move(scans));
+  if (!drive.ok()) return drive.status();
+  return ScanRecording{true, *std::move(drive)};
 }
 
 }  // namespace cartographer_sdf

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Scans of a robot that stands still, as JSON or CSV; docs/scan_localization.md
-// describes the format.
+// Scans of a robot that stands still or drives, as JSON or CSV;
+// docs/scan_localization.md describes the format.
 
 #ifndef CARTOGRAPHER_SDF_RECORDING_SCAN_FILE_H_
 #define CARTOGRAPHER_SDF_RECORDING_SCAN_FILE_H_
@@ -19,6 +19,17 @@ namespace cartographer_sdf {
 // sentence. Files of more than 64 MB or with more than a million beams are
 // refused.
 [[nodiscard]] absl::StatusOr<std::vector<RobotScan>> ReadScanFile(
+    const std::string& path);
+
+struct ScanRecording {
+  // Whether the scans have odometry. If not, they are one OdometryScan.
+  bool is_drive = false;
+  std::vector<OdometryScan> scans;
+};
+
+// As ReadScanFile. Where the scans have odometry, either all have it, with a
+// time, or it is an error; times are as in the file, in whatever order.
+[[nodiscard]] absl::StatusOr<ScanRecording> ReadScanRecording(
     const std::string& path);
 
 }  // namespace cartographer_sdf

@@ -248,6 +248,17 @@ Json ToJson(const ScanLocalization& result) {
       {"milliseconds", MillisecondsJson(result.stage_seconds)}};
 }
 
+Json ToJson(const SessionAnswer& answer) {
+  Json json = ToJson(answer.localization);
+  json["localized"] = answer.T_map_robot.has_value();
+  json["T_map_robot"] = ToJson(answer.T_map_robot);
+  json.update({{"state", SearchStateName(answer.state)},
+               {"looks", answer.num_looks},
+               {"meters", answer.distance_driven},
+               {"seconds", answer.seconds}});
+  return json;
+}
+
 Json ToJson(const MergingResult& result) {
   return {{"merged", result.refusal.empty()},
           {"reason", result.refusal},

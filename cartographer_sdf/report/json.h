@@ -18,6 +18,7 @@
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/report/run_description.h"
 #include "nlohmann/json.hpp"
 
@@ -56,6 +57,9 @@ template <typename T>
 
 // The file R.json of relocalize --scan.
 [[nodiscard]] Json ToJson(const ScanLocalization& result);
+
+// As of a scan; "localized" where the robot is located.
+[[nodiscard]] Json ToJson(const SessionAnswer& answer);
 
 // The outcome of each session, and of each pair of sessions.
 [[nodiscard]] Json ToJson(const MergingResult& result);

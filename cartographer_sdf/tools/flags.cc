@@ -18,9 +18,10 @@ DEFINE_string(query, "",
               "Second map, whose submaps are searched for in the first.");
 DEFINE_string(output, "", "File to write.");
 DEFINE_string(places, "",
-              "File that caches the descriptions of the submaps of the map, so "
-              "that later runs start faster. Written if it is missing or was "
-              "made for another map or other options.");
+              "File that caches the descriptions of the submaps of the map, or "
+              "with --scan its panoramas, so that later runs start faster. "
+              "Written if it is missing or was made for another map or other "
+              "options.");
 DEFINE_string(truth, "",
               "File of true poses, with lines of "
               "kind,trajectory,index,x,y,yaw [m, rad].");

@@ -24,9 +24,11 @@
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 
-DEFINE_double(first_seconds, 0.,
-              "Use only this duration of each trajectory of the query, as if "
-              "it had just been driven: places are made from its scans. [s]");
+DEFINE_double(
+    first_seconds, 0.,
+    "Use only this duration of each trajectory of the query, or of the "
+    "drive of --scan, as if it had just been driven: places are made "
+    "from its scans. [s]");
 DEFINE_double(start_seconds, 0.,
               "Time from the beginning of each trajectory at which "
               "--first_seconds starts. [s]");
@@ -70,8 +72,7 @@ absl::Status CheckQueryFlags() {
     return UsageError(
         "--query is missing, the map or drive to find, or --scan, the scan");
   }
-  for (const char* const flag : {"query", "first_seconds", "start_seconds",
-                                 "num_starts", "output", "places"}) {
+  for (const char* const flag : {"query", "output"}) {
     if (IsGiven(flag)) {
       return UsageError(absl::StrCat("--", flag, " does not go with --scan"));
     }
@@ -300,9 +301,10 @@ Subcommand RelocalizeSubcommand() {
       "With --output, writes both maps as one: the query is attached to the "
       "map of --map, which does not move, and optimised. If the query is "
       "not localized, nothing is written, and the exit code is 3.\n\n"
-      "With --scan in place of --query, finds a robot that stands still: all "
-      "poses that explain its scans, each with its probability. --map may then "
-      "be a map of ROS's map_server, too: its .yaml, .pgm or .png file.",
+      "With --scan in place of --query, finds a robot that stands still or "
+      "drives by its scans: all poses that explain them, each with its "
+      "probability. --map may also be a map of ROS's map_server: its .yaml "
+      "file, or the .pgm or .png image beside it.",
       {{"map",
         FileUse::kRead,
         {},

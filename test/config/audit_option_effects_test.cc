@@ -148,8 +148,7 @@ TEST_F(AuditOptionEffectsTest, NoneOfReportsIsWithout) {
       {"", [&](const ReportOptions& options) {
          const absl::Status status = WriteCloseLoopsReport(
              {rooms_.directory().path(), options, ""}, LoopClosingOptions(),
-             "map", result,
-             [this](const SubmapCallback& on_submap) {
+             "map", result, [this](const SubmapCallback& on_submap) {
                return ReadMap(rooms_.Path(), {on_submap, {}}).status();
              });
          CHECK(status.ok()) << status;

@@ -60,6 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* const data,
   (void)ReadPgm(path, 0.05);
   (void)ReadPngImage(path);
   (void)ReadScanFile(path);
+  (void)ReadScanRecording(path);
   (void)ReadRosMap(fuzz::WriteInput(
       "input.yaml", std::string(reinterpret_cast<const char*>(data), size)));
   return 0;

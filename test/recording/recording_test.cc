@@ -4,6 +4,7 @@
 #include "cartographer_sdf/recording/recording.h"
 
 #include <cmath>
+#include <vector>
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -66,6 +67,36 @@ TEST(MotionTest, CutsByTime) {
   EXPECT_EQ(cut.scans.back().time, 105.);
   EXPECT_THAT(Cut(recording, 20., 3.).scans, IsEmpty());
   EXPECT_EQ(Cut(recording, 0., INFINITY).scans.size(), 10u);
+}
+
+TEST(OdometryScansTest, ARangeThatComesTooOftenIsNone) {
+  Recording recording;
+  recording.first_angle = -M_PI / 2.;
+  recording.angle_increment = M_PI / 2.;
+  recording.scans = {Scan(1., {1., 2., 0.5}), Scan(2., {3., 4., 0.6})};
+  recording.scans[0].ranges = {2., 81.9, 3.};
+  recording.scans[1].ranges = {81.9, 25., 4.};
+  const std::vector<OdometryScan> scans = OdometryScansOf(recording);
+  ASSERT_EQ(scans.size(), 2u);
+  EXPECT_EQ(scans[1].time, 2.);
+  EXPECT_EQ(scans[1].T_odometry_robot.translation().x(), 3.);
+  const cartographer_sdf::Scan& first = scans[0].scans.front().scan;
+  ASSERT_EQ(first.returns.size(), 2u);
+  EXPECT_NEAR(first.returns[0].y(), -2., 1e-5);
+  EXPECT_NEAR(first.returns[1].y(), 3., 1e-5);
+  // As far as the lidar saw anything.
+  ASSERT_EQ(first.misses.size(), 1u);
+  EXPECT_NEAR(first.misses[0].x(), 25., 1e-5);
+}
+
+TEST(OdometryScansTest, TheFarthestEchoIsOne) {
+  Recording recording;
+  recording.scans = {Scan(1., {})};
+  recording.scans[0].ranges = {2., 8., 3.};
+  const std::vector<OdometryScan> scans = OdometryScansOf(recording);
+  EXPECT_EQ(scans[0].scans.front().scan.returns.size(), 3u);
+  EXPECT_TRUE(scans[0].scans.front().scan.misses.empty());
+  EXPECT_TRUE(OdometryScansOf(Recording()).empty());
 }
 
 }  // namespace

@@ -111,5 +111,56 @@ TEST_F(ScanFileTest, DeepNestingIsNoMatter) {
   ExpectError(std::string(1000, '[') + std::string(1000, ']'), "not an object");
 }
 
+TEST_F(ScanFileTest, ReadsADrive) {
+  const auto drive = ReadScanRecording(directory_.Write("drive", R"([
+      {"time": 5, "odometry": {"x": 1, "y": 2, "yaw": 0.5}, "points": [[1, 2]]},
+      {"time": 5, "odometry": {"x": 1, "y": 2, "yaw": 0.5}, "points": [[3, 4]],
+       "sensor": {"yaw": 3}},
+      {"time": 6.5, "odometry": {"x": 1.5}, "points": [[5, 6]]}])"));
+  ASSERT_TRUE(drive.ok()) << drive.status();
+  EXPECT_TRUE(drive->is_drive);
+  ASSERT_EQ(drive->scans.size(), 2u);
+  // Two lidars at the same time.
+  ASSERT_EQ(drive->scans[0].scans.size(), 2u);
+  EXPECT_EQ(drive->scans[0].time, 5.);
+  EXPECT_NEAR(drive->scans[0].scans[1].T_robot_sensor.rotation(), 3., 1e-9);
+  EXPECT_NEAR(drive->scans[0].T_odometry_robot.rotation(), 0.5, 1e-9);
+  EXPECT_EQ(drive->scans[1].time, 6.5);
+  EXPECT_NEAR(drive->scans[1].T_odometry_robot.translation().x(), 1.5, 1e-9);
+}
+
+TEST_F(ScanFileTest, ScansWithoutOdometryAreOfAStandingRobot) {
+  const auto standing = ReadScanRecording(directory_.Write(
+      "scans", R"([{"points": [[1, 2]]}, {"points": [[5, 6]], "time": 3}])"));
+  ASSERT_TRUE(standing.ok()) << standing.status();
+  EXPECT_FALSE(standing->is_drive);
+  ASSERT_EQ(standing->scans.size(), 1u);
+  EXPECT_EQ(standing->scans[0].scans.size(), 2u);
+}
+
+TEST_F(ScanFileTest, RefusesBrokenDrives) {
+  const auto expect_error = [&](const std::string& content,
+                                const std::string& part) {
+    const auto drive = ReadScanRecording(directory_.Write("drive", content));
+    ASSERT_FALSE(drive.ok()) << content;
+    EXPECT_THAT(std::string(drive.status().message()), HasSubstr(part));
+  };
+  expect_error(R"({"odometry": {"x": 1}, "points": [[1, 2]]})", "\"time\"");
+  expect_error(R"({"odometry": {"x": "1"}, "time": 1, "points": [[1, 2]]})",
+               "finite");
+  expect_error(R"({"odometry": {"x": NaN, "y": 1e300}, "time": 1,
+                   "points": [[1, 2]]})",
+               "absurd");
+  expect_error(R"({"odometry": [1, 2, 3], "time": 1, "points": [[1, 2]]})",
+               "\"odometry\"");
+  for (const char* const content :
+       {R"([{"odometry": {}, "time": 1, "points": [[1, 2]]},
+            {"points": [[1, 2]]}])",
+        R"([{"points": [[1, 2]]},
+            {"odometry": {}, "time": 1, "points": [[1, 2]]}])"}) {
+    expect_error(content, "others have not");
+  }
+}
+
 }  // namespace
 }  // namespace cartographer_sdf::scan_file_test

@@ -22,6 +22,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::AnyOf;
+using testing::Building;
 using ::testing::Ge;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -151,6 +152,97 @@ TEST_F(ScanLocalizationTest, FindsTheRobotInAMapOfCartographer) {
   EXPECT_THAT(json["candidates"], SizeIs(Ge(1u)));
 }
 
+// Of a robot that drives, with odometry that has an origin of its own.
+std::string DriveText(const Building& building,
+                      const std::vector<Rigid2>& poses) {
+  Json scans = Json::array();
+  for (size_t k = 0; k < poses.size(); ++k) {
+    const Rigid2 T_odometry_robot = Rigid2(7., -3., 1.) * poses[k];
+    scans.push_back(
+        Json::parse(ScanText(testing::ScanFrom(building, poses[k]))));
+    scans.back()["time"] = 100. + static_cast<double>(k);
+    scans.back()["odometry"] = ToJson(T_odometry_robot);
+  }
+  return scans.dump();
+}
+
+TEST_F(ScanLocalizationTest, FollowsADriveAndFindsARobotThatIsCarriedAway) {
+  std::vector<Rigid2> poses;
+  for (int k = 0; k < 8; ++k) poses.emplace_back(2. + 0.3 * k, 1.7, 0.);
+  for (int k = 0; k < 8; ++k) poses.emplace_back(12.5, 3. + 0.1 * k, 1.5);
+  const std::string drive =
+      directory_.Write("drive.json", DriveText(testing::TwoRooms(), poses));
+  const ProgramResult result =
+      RunTestProgram({"relocalize", "--map", map_, "--scan", drive, "--result",
+                      File("found.json"), "--report", File("report")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const Json json = ParseFile("found.json")["scans"].at(0);
+  EXPECT_TRUE(json["localized"]);
+  EXPECT_EQ(json["state"], "located");
+  EXPECT_NEAR(json["T_map_robot"]["x"], poses.back().translation().x(), 0.1);
+  EXPECT_NEAR(json["T_map_robot"]["y"], poses.back().translation().y(), 0.1);
+  EXPECT_THAT(json["history"], SizeIs(Ge(3u)));
+  EXPECT_EQ(json["history"].at(0)["state"], "located");
+  EXPECT_NEAR(json["history"].at(0)["T_map_robot"]["x"], 2., 0.1);
+  bool was_carried = false;
+  for (const Json& step : json["history"]) {
+    was_carried |= step["use"] == "carried_away";
+  }
+  EXPECT_TRUE(was_carried);
+  EXPECT_THAT(result.output, HasSubstr("located after 0.0 s and 0.0 m"));
+}
+
+TEST_F(ScanLocalizationTest, TakesPartsOfADriveOfCartographer) {
+  const std::string map = File("office.pbstream");
+  const std::string drive = File("drive.pbstream");
+  const FloorPlan plan = testing::MakeSmallOffice(1);
+  testing::WriteShortDrive(plan, 1, map);
+  testing::WriteShortDrive(plan, 2, drive);
+  const ProgramResult result = RunTestProgram(
+      {"relocalize", "--map", map, "--scan", drive, "--first_seconds", "8",
+       "--num_starts", "3", "--result", File("found.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.error;
+  const Json json = ParseFile("found.json")["scans"];
+  ASSERT_THAT(json, SizeIs(3));
+  EXPECT_EQ(json[0]["start_seconds"], 0.);
+  EXPECT_GT(json[2]["start_seconds"], json[1]["start_seconds"]);
+  for (const Json& start : json) {
+    EXPECT_THAT(start["history"], SizeIs(Ge(1u)));
+    for (const Json& step : start["history"]) EXPECT_LE(step["seconds"], 8.);
+  }
+}
+
+TEST_F(ScanLocalizationTest, AnswersTheSameFromTheSavedPanoramas) {
+  std::string map = File("office.pbstream");
+  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, map);
+  for (const std::string& any_map : {map_, map}) {
+    const std::string places = File(any_map == map ? "a.places" : "b.places");
+    const auto run = [&](const std::string& result) {
+      const ProgramResult program =
+          RunTestProgram({"relocalize", "--map", any_map, "--scan", scan_,
+                          "--places", places, "--result", File(result)});
+      EXPECT_EQ(program.exit_code, 0) << program.error;
+      return program.error;
+    };
+    EXPECT_EQ(run("drawn.json"), "");
+    ASSERT_TRUE(std::filesystem::exists(places));
+    EXPECT_EQ(run("read.json"), "");
+    const Json drawn = ParseFile("drawn.json")["scans"].at(0);
+    const Json read = ParseFile("read.json")["scans"].at(0);
+    EXPECT_EQ(drawn["candidates"], read["candidates"]);
+    EXPECT_EQ(drawn["reason"], read["reason"]);
+    // Broken, and made anew.
+    const std::string name = std::filesystem::path(places).filename();
+    std::string bytes = directory_.Read(name);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+    directory_.Write(name, bytes);
+    EXPECT_THAT(run("again.json"), HasSubstr("--places: "));
+    EXPECT_EQ(run("read.json"), "");
+    EXPECT_EQ(ParseFile("read.json")["scans"].at(0)["candidates"],
+              drawn["candidates"]);
+  }
+}
+
 TEST_F(ScanLocalizationTest, MistakesAreErrorsOfOneLine) {
   const auto expect_error = [](const std::vector<std::string>& arguments,
                                const int exit_code, const std::string& part) {
@@ -166,7 +258,9 @@ TEST_F(ScanLocalizationTest, MistakesAreErrorsOfOneLine) {
   expect_error({"--map", map_, "--scan", scan_, "--query", scan_}, 2,
                "--query does not go with --scan");
   expect_error({"--map", map_, "--scan", scan_, "--first_seconds", "3"}, 2,
-               "--first_seconds does not go with --scan");
+               "have no odometry");
+  expect_error({"--map", map_, "--scan", scan_, "--output", File("o.pbstream")},
+               2, "--output does not go with --scan");
   expect_error({"--map", map_, "--scan", scan_ + "," + scan_, "--report",
                 File("report")},
                2, "single --scan");
