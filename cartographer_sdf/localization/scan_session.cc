@@ -131,13 +131,13 @@ std::string Validate(const ScanSessionOptions& options) {
                                        : "lost_after_scans must be positive";
 }
 
-const char* SearchStateName(const SearchState state) {
+const char* ScanSearchStateName(const ScanSearchState state) {
   switch (state) {
-    case SearchState::kSearching:
+    case ScanSearchState::kSearching:
       return "searching";
-    case SearchState::kLocated:
+    case ScanSearchState::kLocated:
       return "located";
-    case SearchState::kLost:
+    case ScanSearchState::kLost:
       return "lost";
   }
   LOG(FATAL) << "no such state";
@@ -184,8 +184,9 @@ const SessionAnswer& ScanSession::Add(const OdometryScan& scan) {
   if (kNumBeamsPerDirection * NumEchoes(sweep) < options_.min_num_beams) {
     answer_.use = ScanUse::kTooFewEchoes;
   } else {
-    if (answer_.state == SearchState::kLocated ? Contradicts(scan, sweep)
-                                               : IsCarriedAway(scan, sweep)) {
+    if (answer_.state == ScanSearchState::kLocated
+            ? Contradicts(scan, sweep)
+            : IsCarriedAway(scan, sweep)) {
       BeginSearch(scan);
       answer_.use = ScanUse::kCarriedAway;
     }
@@ -233,9 +234,9 @@ void ScanSession::BeginSearch(const OdometryScan& scan) {
   num_looks_until_search_ = 0;
   search_backoff_ = 1;
   search_begin_ = scan.time;
-  const SearchState state = answer_.state == SearchState::kSearching
-                                ? SearchState::kSearching
-                                : SearchState::kLost;
+  const ScanSearchState state = answer_.state == ScanSearchState::kSearching
+                                    ? ScanSearchState::kSearching
+                                    : ScanSearchState::kLost;
   answer_ = SessionAnswer();
   answer_.state = state;
   DescribeNothing();
@@ -323,7 +324,7 @@ void ScanSession::AddLook(const OdometryScan& scan, Sweep sweep) {
   }
   looks_.push_back({scan.T_odometry_robot, scan.scans, std::move(sweep)});
   ++answer_.num_looks;
-  bool may_search = answer_.state != SearchState::kLocated;
+  bool may_search = answer_.state != ScanSearchState::kLocated;
   if (may_search && --num_looks_until_search_ <= 0) {
     SearchMap();
     may_search = false;
@@ -389,7 +390,7 @@ void ScanSession::RankHypotheses() {
                    [](const Hypothesis& a, const Hypothesis& b) {
                      return a.utility > b.utility;
                    });
-  const bool is_located = answer_.state == SearchState::kLocated;
+  const bool is_located = answer_.state == ScanSearchState::kLocated;
   std::vector<Hypothesis> kept;
   for (Hypothesis& one : hypotheses_) {
     const auto same =
@@ -485,7 +486,7 @@ void ScanSession::Decide() {
   if (hypotheses_.empty()) return;
   ScanLocalization& result = answer_.localization;
   Hypothesis& best = hypotheses_.front();
-  if (answer_.state == SearchState::kLocated) {
+  if (answer_.state == ScanSearchState::kLocated) {
     if (best.is_answer ||
         result.candidates.front().probability < kRivalProbability) {
       if (result.verdict != LocalizationVerdict::kLocalized) {
@@ -496,11 +497,11 @@ void ScanSession::Decide() {
       }
       return;
     }
-    answer_.state = SearchState::kLost;
+    answer_.state = ScanSearchState::kLost;
     for (Hypothesis& one : hypotheses_) one.is_answer = false;
   }
   if (result.verdict == LocalizationVerdict::kLocalized) {
-    answer_.state = SearchState::kLocated;
+    answer_.state = ScanSearchState::kLocated;
     best.is_answer = true;
   }
 }

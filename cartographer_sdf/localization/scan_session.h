@@ -52,13 +52,13 @@ struct ScanSessionOptions {
 };
 [[nodiscard]] std::string Validate(const ScanSessionOptions& options);
 
-enum class SearchState {
+enum class ScanSearchState {
   kSearching,
   kLocated,
   kLost  // located before, and searched for again
 };
 // "searching", ...
-[[nodiscard]] const char* SearchStateName(SearchState state);
+[[nodiscard]] const char* ScanSearchStateName(ScanSearchState state);
 
 // What became of a scan.
 enum class ScanUse {
@@ -74,7 +74,7 @@ enum class ScanUse {
 [[nodiscard]] const char* ScanUseName(ScanUse use);
 
 struct SessionAnswer {
-  SearchState state = SearchState::kSearching;
+  ScanSearchState state = ScanSearchState::kSearching;
   // Of the robot at the latest scan; only while it is located.
   std::optional<Rigid2> T_map_robot;
   // What the latest looks say: all candidates at the latest scan, each with the

@@ -252,7 +252,7 @@ Json ToJson(const SessionAnswer& answer) {
   Json json = ToJson(answer.localization);
   json["localized"] = answer.T_map_robot.has_value();
   json["T_map_robot"] = ToJson(answer.T_map_robot);
-  json.update({{"state", SearchStateName(answer.state)},
+  json.update({{"state", ScanSearchStateName(answer.state)},
                {"looks", answer.num_looks},
                {"meters", answer.distance_driven},
                {"seconds", answer.seconds}});

@@ -213,7 +213,7 @@ Json StepJson(const SessionAnswer& answer, const double seconds,
   const ScanLocalization& found = answer.localization;
   Json step = {{"seconds", seconds},
                {"meters", meters},
-               {"state", SearchStateName(answer.state)},
+               {"state", ScanSearchStateName(answer.state)},
                {"use", ScanUseName(answer.use)},
                {"T_map_robot", ToJson(answer.T_map_robot)},
                {"elsewhere_probability", ToJson(found.elsewhere_probability)},
@@ -239,7 +239,7 @@ LocalizedDrive LocalizeDrive(const Options& options, const PanoramaMap& map,
                              const std::vector<OdometryScan>& scans) {
   LocalizedDrive drive;
   ScanSession session(options.scan_localization, options.scan_session, map);
-  SearchState state = SearchState::kSearching;
+  ScanSearchState state = ScanSearchState::kSearching;
   double meters = 0.;
   std::optional<Rigid2> T_odometry_last;
   for (const OdometryScan& scan : scans) {
@@ -256,7 +256,7 @@ LocalizedDrive LocalizeDrive(const Options& options, const PanoramaMap& map,
     if (answer.state != state) {
       state = answer.state;
       std::cout << absl::StrFormat("%s: %s after %.1f s and %.1f m", name,
-                                   SearchStateName(state), seconds, meters);
+                                   ScanSearchStateName(state), seconds, meters);
       if (answer.T_map_robot) {
         std::cout << ": " << FormatPose(*answer.T_map_robot);
       }

@@ -247,7 +247,7 @@ std::string FollowDrive(const ScanSessionOptions& options,
                      {testing::Narrowed(
                          testing::ScanFrom(testing::TwoRooms(), T_world_robot),
                          field_of_view)}});
-    text += Text(answer.localization) + SearchStateName(answer.state) +
+    text += Text(answer.localization) + ScanSearchStateName(answer.state) +
             ScanUseName(answer.use);
   }
   return text;

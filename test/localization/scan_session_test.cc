@@ -102,8 +102,8 @@ PanoramaMap* ScanSessionTest::two_rooms_;
 std::string Text(const SessionAnswer& answer) {
   std::ostringstream text;
   text.precision(17);
-  text << SearchStateName(answer.state) << " " << ScanUseName(answer.use) << " "
-       << answer.localization.reason << " " << answer.num_looks << " "
+  text << ScanSearchStateName(answer.state) << " " << ScanUseName(answer.use)
+       << " " << answer.localization.reason << " " << answer.num_looks << " "
        << answer.distance_driven;
   for (const ScanCandidate& candidate : answer.localization.candidates) {
     text << "\n"
@@ -121,12 +121,13 @@ constexpr double kNarrow = 0.9;
 TEST_F(ScanSessionTest, TheAnswerComesAsSoonAsItIsCertain) {
   Robot robot(TwoRooms(), kInCorridor);
   EXPECT_EQ(session_.Add(robot.See(kNarrow)).use, ScanUse::kCompared);
-  EXPECT_EQ(session_.answer().state, SearchState::kSearching);
+  EXPECT_EQ(session_.answer().state, ScanSearchState::kSearching);
   EXPECT_FALSE(session_.answer().T_map_robot.has_value());
   robot.DriveTo({5.5, 6.1}, &session_, kNarrow);
   robot.DriveTo({5.5, 4.}, &session_);
   const SessionAnswer& answer = session_.answer();
-  ASSERT_EQ(answer.state, SearchState::kLocated) << answer.localization.reason;
+  ASSERT_EQ(answer.state, ScanSearchState::kLocated)
+      << answer.localization.reason;
   EXPECT_TRUE(IsNear(*answer.T_map_robot, robot.T_world_robot(), 0.1, 0.05))
       << *answer.T_map_robot << " is not " << robot.T_world_robot();
 }
@@ -134,13 +135,13 @@ TEST_F(ScanSessionTest, TheAnswerComesAsSoonAsItIsCertain) {
 TEST_F(ScanSessionTest, ThePoseFollowsTheRobotAlthoughOdometryDrifts) {
   Robot robot(TwoRooms(), Rigid2(2., 1.7, 0.3));
   session_.Add(robot.See());
-  ASSERT_EQ(session_.answer().state, SearchState::kLocated);
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated);
   for (const Eigen::Vector2d& target :
        {Eigen::Vector2d(3.2, 3.9), Eigen::Vector2d(5.5, 4.),
         Eigen::Vector2d(5.5, 6.1), Eigen::Vector2d(10.6, 6.1),
         Eigen::Vector2d(10.6, 3.), Eigen::Vector2d(13.5, 3.4)}) {
     robot.DriveTo(target, &session_);
-    ASSERT_EQ(session_.answer().state, SearchState::kLocated)
+    ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated)
         << session_.answer().localization.reason;
     EXPECT_TRUE(IsNear(*session_.answer().T_map_robot, robot.T_world_robot(),
                        0.15, 0.05))
@@ -163,17 +164,17 @@ TEST_F(ScanSessionTest, AStandingRobotAddsNothing) {
 TEST_F(ScanSessionTest, ACarriedRobotIsLostAndSearchedForAgain) {
   Robot robot(TwoRooms(), Rigid2(2., 1.7, 0.3));
   session_.Add(robot.See());
-  ASSERT_EQ(session_.answer().state, SearchState::kLocated);
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated);
   robot.CarryTo(Rigid2(12.2, 3.1, 1.));
   // For less than lost_after_seconds it may be someone who stands around.
   for (int k = 0; k < 15; ++k) session_.Add(robot.See());
-  EXPECT_EQ(session_.answer().state, SearchState::kLocated);
+  EXPECT_EQ(session_.answer().state, ScanSearchState::kLocated);
   bool was_lost = false;
   for (int k = 0; k < 15; ++k) {
     was_lost |= session_.Add(robot.See()).use == ScanUse::kCarriedAway;
   }
   EXPECT_TRUE(was_lost);
-  ASSERT_EQ(session_.answer().state, SearchState::kLocated)
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated)
       << session_.answer().localization.reason;
   EXPECT_TRUE(
       IsNear(*session_.answer().T_map_robot, robot.T_world_robot(), 0.1, 0.05));
@@ -182,7 +183,7 @@ TEST_F(ScanSessionTest, ACarriedRobotIsLostAndSearchedForAgain) {
 TEST_F(ScanSessionTest, ARobotThatIsCarriedOutOfTheMapStaysLost) {
   Robot robot(TwoRooms(), Rigid2(2., 1.7, 0.3));
   session_.Add(robot.See());
-  ASSERT_EQ(session_.answer().state, SearchState::kLocated);
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated);
   Robot elsewhere(testing::BareRoom(4.3, 2.9), Rigid2(0.4, 0.2, 0.5));
   double time = 1e9 + 10.;
   for (int k = 0; k < 40; ++k) {
@@ -190,14 +191,14 @@ TEST_F(ScanSessionTest, ARobotThatIsCarriedOutOfTheMapStaysLost) {
     scan.time = time += 0.1;
     session_.Add(scan);
   }
-  EXPECT_EQ(session_.answer().state, SearchState::kLost);
+  EXPECT_EQ(session_.answer().state, ScanSearchState::kLost);
   EXPECT_FALSE(session_.answer().T_map_robot.has_value());
 }
 
 TEST_F(ScanSessionTest, ARobotThatIsCarriedWhileItIsSearchedForBeginsAnew) {
   Robot robot(TwoRooms(), kInCorridor);
   session_.Add(robot.See(kNarrow));
-  ASSERT_EQ(session_.answer().state, SearchState::kSearching);
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kSearching);
   Robot elsewhere(testing::BareRoom(3., 2.), Rigid2(0.2, 0.1, 0.5));
   OdometryScan scan = elsewhere.See(kNarrow);
   scan.time += 10.;
@@ -218,7 +219,7 @@ TEST_F(ScanSessionTest, AnotherBuildingIsNeverCertain) {
        {Eigen::Vector2d(3.5, 2.), Eigen::Vector2d(3.5, 5.),
         Eigen::Vector2d(0., 4.5), Eigen::Vector2d(1., 2.)}) {
     robot.DriveTo(target, &session_);
-    EXPECT_EQ(session_.answer().state, SearchState::kSearching)
+    EXPECT_EQ(session_.answer().state, ScanSearchState::kSearching)
         << session_.answer().localization.reason;
   }
 }
@@ -284,13 +285,13 @@ TEST_F(ScanSessionTest, AFirstScanMayBeBroken) {
   EXPECT_EQ(session_.Add(scan).use, ScanUse::kTimeNotLater);
   scan.time = 0.;
   EXPECT_EQ(session_.Add(scan).use, ScanUse::kTooFewEchoes);
-  EXPECT_EQ(session_.answer().state, SearchState::kSearching);
+  EXPECT_EQ(session_.answer().state, ScanSearchState::kSearching);
 }
 
 TEST_F(ScanSessionTest, AJumpOfTheOdometryBeginsTheSearchAnew) {
   Robot robot(TwoRooms(), Rigid2(2., 1.7, 0.3));
   session_.Add(robot.See());
-  ASSERT_EQ(session_.answer().state, SearchState::kLocated);
+  ASSERT_EQ(session_.answer().state, ScanSearchState::kLocated);
   OdometryScan scan = robot.See();
   scan.T_odometry_robot = Rigid2(1e5, 0., 0.);
   EXPECT_EQ(session_.Add(scan).use, ScanUse::kOdometryJumped);
@@ -361,13 +362,13 @@ TEST(RealScanSessionTest, IsLocatedAndStaysSo) {
   ASSERT_TRUE(query.ok()) << query.status();
   ScanSession session({}, {}, *map);
   int num_scans = 0, num_located = 0, num_lost = 0;
-  SearchState state = SearchState::kSearching;
+  ScanSearchState state = ScanSearchState::kSearching;
   for (const OdometryScan& scan : OdometryScansOf(*query, 0)) {
     const SessionAnswer& answer = session.Add(scan);
     ++num_scans;
-    num_located += answer.state == SearchState::kLocated;
-    num_lost +=
-        state == SearchState::kLocated && answer.state == SearchState::kLost;
+    num_located += answer.state == ScanSearchState::kLocated;
+    num_lost += state == ScanSearchState::kLocated &&
+                answer.state == ScanSearchState::kLost;
     state = answer.state;
   }
   EXPECT_GT(num_located, 0.9 * num_scans);
