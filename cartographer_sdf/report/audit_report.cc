@@ -270,7 +270,13 @@ void CompareMaps(const Audit& audit, Inspection* const inspection) {
   if (!moved) return;
   const double before = audit.quality_before.contradiction_ratio;
   const double after = audit.quality_after.contradiction_ratio;
-  const bool is_better = audit.refusal.empty() && after < before;
+  // Less is the choice of pairs.
+  constexpr double kMinDifference = 0.0005;
+  const char* const comparison =
+      !audit.refusal.empty()            ? "is WORSE, so that it is not written"
+      : after < before - kMinDifference ? "is better"
+      : after > before + kMinDifference ? "is not better"
+                                        : "is as good as it was";
   inspection->tone = !audit.refusal.empty() ? Tone::kBad : Tone::kCaution;
   absl::StrAppendFormat(
       &inspection->verdict,
@@ -278,10 +284,7 @@ void CompareMaps(const Audit& audit, Inspection* const inspection) {
       "%.2f %% of the walls stand in free space where submaps overlap, %.2f %% "
       "before.",
       audit.dropped.size() == 1 ? "it" : "them", moved->largest, moved->mean,
-      is_better               ? "is better"
-      : audit.refusal.empty() ? "is hardly better"
-                              : "is WORSE, so that it is not written",
-      100. * after, 100. * before);
+      comparison, 100. * after, 100. * before);
 }
 
 void JudgeAudit(const Audit& audit, const bool has_drop_list,

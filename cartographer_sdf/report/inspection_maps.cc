@@ -86,7 +86,7 @@ class StatesPainter {
     picture.conflict_share = ConflictShare(sessions);
     for (size_t k = 0; k < sessions.size(); ++k) {
       picture.session_pngs.push_back(
-          PaintIndexed(sessions[k], CategoryColor(static_cast<int>(k)))
+          PaintWalls(sessions[k], CategoryColor(static_cast<int>(k)))
               .EncodePng());
     }
     return picture;

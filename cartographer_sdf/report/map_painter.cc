@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "absl/strings/str_cat.h"
@@ -72,6 +73,31 @@ IndexedPicture BlankPicture(const MapPainter& map) {
   picture.height = map.size().y();
   picture.pixels.reserve(static_cast<size_t>(picture.width) *
                          static_cast<size_t>(picture.height));
+  return picture;
+}
+
+// Uncertain walls are paler; free space has the first level.
+int WallLevelOf(const double excess) {
+  return static_cast<int>(
+      std::lround(std::clamp(kContrast * excess, 0., 1.) * (kNumLevels - 1)));
+}
+
+// The levels are from white to the colour of walls.
+IndexedPicture PaintLevels(const MapPainter& map, const Color& wall,
+                           const std::function<int(double)>& level_of) {
+  IndexedPicture picture = BlankPicture(map);
+  picture.palette.push_back({0, 0, 0, 0});
+  for (int level = 0; level < kNumLevels; ++level) {
+    picture.palette.push_back(
+        ToRgba(Mix(kWhite, wall, level / (kNumLevels - 1.))));
+  }
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      const std::optional<double> excess = map.ExcessAt(x, y);
+      picture.pixels.push_back(
+          excess ? static_cast<uint8_t>(1 + level_of(*excess)) : 0);
+    }
+  }
   return picture;
 }
 
@@ -256,20 +282,13 @@ std::string IndexedPicture::EncodePng() const {
 }
 
 IndexedPicture PaintIndexed(const MapPainter& map, const Color& wall) {
-  IndexedPicture picture = BlankPicture(map);
-  picture.palette.push_back({0, 0, 0, 0});
-  for (int level = 0; level < kNumLevels; ++level) {
-    picture.palette.push_back(
-        ToRgba(Mix(kWhite, wall, level / (kNumLevels - 1.))));
-  }
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      const std::optional<double> excess = map.ExcessAt(x, y);
-      picture.pixels.push_back(
-          excess ? static_cast<uint8_t>(1 + LevelOf(*excess, kNumLevels)) : 0);
-    }
-  }
-  return picture;
+  return PaintLevels(map, wall, [](const double excess) {
+    return LevelOf(excess, kNumLevels);
+  });
+}
+
+IndexedPicture PaintWalls(const MapPainter& map, const Color& wall) {
+  return PaintLevels(map, wall, WallLevelOf);
 }
 
 IndexedPicture PaintOverlaid(const std::vector<MapPainter>& maps) {
@@ -286,9 +305,7 @@ IndexedPicture PaintOverlaid(const std::vector<MapPainter>& maps) {
     for (int x = 0; x < picture.width; ++x) {
       const OverlaidPixel pixel = OverlayAt(maps, x, y);
       const int map = static_cast<int>(pixel.map) % kNumMapColors;
-      // Uncertain walls are paler; the first level of any colour is white.
-      const int level = static_cast<int>(std::lround(
-          std::min(1., kContrast * pixel.excess) * (kNumLevels - 1)));
+      const int level = WallLevelOf(pixel.excess);
       picture.pixels.push_back(static_cast<uint8_t>(
           !pixel.is_known        ? 0
           : pixel.IsInConflict() ? 1

@@ -88,6 +88,11 @@ struct IndexedPicture {
 [[nodiscard]] IndexedPicture PaintIndexed(const MapPainter& map,
                                           const Color& wall);
 
+// For overlays: walls in the given colour, the surer the stronger, all free
+// space white, and transparent where nothing is known.
+[[nodiscard]] IndexedPicture PaintWalls(const MapPainter& map,
+                                        const Color& wall);
+
 // Several maps in one picture. The painters are made of the same grids, and
 // each has the submaps of one map. Walls have the colour of their map's index
 // (CategoryColor), free space of any map is white, walls of one map in the free

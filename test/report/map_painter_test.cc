@@ -160,6 +160,25 @@ TEST(MapPainterTest, IndexedPicturesShowTheSame) {
   EXPECT_EQ(picture.palette[0].alpha, 0);
 }
 
+TEST(MapPainterTest, WallsAloneHaveAColor) {
+  OccupancyGrid grid = TestRoom();
+  // Half of the room is hardly known to be free.
+  for (int j = 0; j < grid.geometry.size.y() / 2; ++j) {
+    for (int i = 0; i < grid.geometry.size.x(); ++i) {
+      if (grid.probability(i, j) < 0.5f) grid.probability(i, j) = 0.49f;
+    }
+  }
+  MapPainter painter({{TestGeometry(), Rigid2()}}, 1000);
+  painter.AddSubmap(grid, Rigid2());
+  const DecodedPng png =
+      DecodePng(PaintWalls(painter, CategoryColor(0)).EncodePng());
+  for (const double y : {-1., 1.}) {
+    EXPECT_EQ(PixelAt(png, painter.frame(), 0., y), (Rgb{255, 255, 255}));
+  }
+  const Rgb wall = PixelAt(png, painter.frame(), 3. + kWall / 2., 0.5);
+  EXPECT_GT(wall.blue, wall.red + 100);
+}
+
 TEST(MapPainterTest, OverlaidMapsHaveTheirColors) {
   // A wall of the second stands in the middle of the first.
   const std::vector<MapPainter> maps = TwoMaps(Rigid2(3., 0., 0.));

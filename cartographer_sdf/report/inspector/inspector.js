@@ -83,7 +83,12 @@ run.tables.forEach((table) => table.rows.forEach((row, k) => {
 
 function formatValue(measure, value) {
   if (value === null || value === undefined) return "\u2013";
-  return value.toFixed(measure.decimals) + (measure.unit ? `\u00a0${measure.unit}` : "");
+  const unit = measure.unit ? `\u00a0${measure.unit}` : "";
+  const step = 10 ** -measure.decimals;
+  // Nothing is certain, nor impossible.
+  if (measure.name === "probability" && value > 100 - step / 2) return `>\u00a0${(100 - step).toFixed(measure.decimals)}${unit}`;
+  if (measure.name === "probability" && value < step / 2) return `<\u00a0${step.toFixed(measure.decimals)}${unit}`;
+  return value.toFixed(measure.decimals) + unit;
 }
 function passes(measure, value) {
   if (measure.bound === "none" || value === null || value === undefined) return null;
@@ -851,7 +856,7 @@ function fillTable() {
   table.tBodies[0].replaceChildren(body);
   const unlisted = current.unlisted > 0 ? `; ${current.unlisted} less likely ones are left out` : "";
   byId("row-count").textContent = rows.length === current.rows.length
-    ? `${rows.length} rows${unlisted}` : `${rows.length} of ${current.rows.length} rows${unlisted}`;
+    ? `${rows.length} ${rows.length === 1 ? "row" : "rows"}${unlisted}` : `${rows.length} of ${current.rows.length} rows${unlisted}`;
 }
 function chooseTable(table) {
   current = table;
