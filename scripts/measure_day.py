@@ -22,9 +22,12 @@ def table_of(arguments):
         return arguments.csv.read_text()
     done = subprocess.run([arguments.program, str(arguments.submaps), str(arguments.seed)],
                           stdout=subprocess.PIPE, text=True, check=True)
+    # Cartographer shows the progress of its optimisations there, too.
+    table = "".join(line + "\n" for line in done.stdout.split("\n")
+                    if "," in line and "Optimizing" not in line)
     if arguments.csv:
-        arguments.csv.write_text(done.stdout)
-    return done.stdout
+        arguments.csv.write_text(table)
+    return table
 
 
 def median(values):
