@@ -303,8 +303,7 @@ Subcommand RelocalizeSubcommand() {
       "not localized, nothing is written, and the exit code is 3.\n\n"
       "With --scan in place of --query, finds a robot that stands still or "
       "drives by its scans: all poses that explain them, each with its "
-      "probability. --map may also be a map of ROS's map_server: its .yaml "
-      "file, or the .pgm or .png image beside it.",
+      "probability. --map may then be a map of ROS's map_server, too.",
       {{"map",
         FileUse::kRead,
         {},
