@@ -229,9 +229,10 @@ TEST(ScanLocalizationOptionEffectsTest, NoneIsWithout) {
 // A drive of half a metre a scan straight ahead, and then one scan a second in
 // another room; what each scan tells.
 std::string FollowDrive(const ScanSessionOptions& options,
-                        const PanoramaMap& map, const double field_of_view) {
+                        const PanoramaMap& map, const double field_of_view,
+                        const double min_probability) {
   ScanLocalizationOptions localization;
-  localization.min_probability = 0.9;
+  localization.min_probability = min_probability;
   ScanSession session(localization, options, map);
   std::string text;
   for (int k = 0; k < 24; ++k) {
@@ -256,23 +257,24 @@ std::string FollowDrive(const ScanSessionOptions& options,
 TEST(ScanSessionOptionEffectsTest, NoneIsWithout) {
   const auto map = MakePanoramaMap({}, testing::TwoRoomsGrid(), {});
   ASSERT_TRUE(map.has_value());
+  constexpr double kNeverCertain = 1. - 1e-12;
   const std::vector<testing::Scenario<ScanSessionOptions>> scenarios = {
       {"",
        [&](const ScanSessionOptions& options) {
-         return FollowDrive(options, *map, 0.8);
+         return FollowDrive(options, *map, 0.8, kNeverCertain);
        }},
       {"max_contradicting_fraction",
        [&](const ScanSessionOptions& options) {
-         return FollowDrive(options, *map, 7.);
+         return FollowDrive(options, *map, 7., 0.9);
        }},
       {"lost_after_seconds",
        [&](const ScanSessionOptions& options) {
-         return FollowDrive(options, *map, 7.);
+         return FollowDrive(options, *map, 7., 0.9);
        }},
       {"lost_after_scans", [&](const ScanSessionOptions& options) {
          ScanSessionOptions at_once = options;
          at_once.lost_after_seconds = 0.;
-         return FollowDrive(at_once, *map, 7.);
+         return FollowDrive(at_once, *map, 7., 0.9);
        }}};
   ScanSessionOptions base;
   base.max_num_looks = 4;

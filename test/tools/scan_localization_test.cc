@@ -152,26 +152,32 @@ TEST_F(ScanLocalizationTest, FindsTheRobotInAMapOfCartographer) {
   EXPECT_THAT(json["candidates"], SizeIs(Ge(1u)));
 }
 
-// Of a robot that drives, with odometry that has an origin of its own.
+// Of a robot that drives, with odometry that has an origin of its own, and is
+// then carried to another pose, which the odometry does not notice.
 std::string DriveText(const Building& building,
-                      const std::vector<Rigid2>& poses) {
+                      const std::vector<Rigid2>& driven,
+                      const std::vector<Rigid2>& carried) {
   Json scans = Json::array();
-  for (size_t k = 0; k < poses.size(); ++k) {
-    const Rigid2 T_odometry_robot = Rigid2(7., -3., 1.) * poses[k];
+  const auto add = [&](const Rigid2& T_map_robot,
+                       const Rigid2& T_map_odometry) {
     scans.push_back(
-        Json::parse(ScanText(testing::ScanFrom(building, poses[k]))));
-    scans.back()["time"] = 100. + static_cast<double>(k);
-    scans.back()["odometry"] = ToJson(T_odometry_robot);
-  }
+        Json::parse(ScanText(testing::ScanFrom(building, T_map_robot))));
+    scans.back()["time"] = 100. + static_cast<double>(scans.size());
+    scans.back()["odometry"] = ToJson(Rigid2(7., -3., 1.) * T_map_odometry);
+  };
+  for (const Rigid2& pose : driven) add(pose, pose);
+  for (const Rigid2& pose : carried) add(pose, driven.back());
   return scans.dump();
 }
 
 TEST_F(ScanLocalizationTest, FollowsADriveAndFindsARobotThatIsCarriedAway) {
-  std::vector<Rigid2> poses;
-  for (int k = 0; k < 8; ++k) poses.emplace_back(2. + 0.3 * k, 1.7, 0.);
-  for (int k = 0; k < 8; ++k) poses.emplace_back(12.5, 3. + 0.1 * k, 1.5);
-  const std::string drive =
-      directory_.Write("drive.json", DriveText(testing::TwoRooms(), poses));
+  std::vector<Rigid2> driven;
+  for (const double x : {0., 0.3, 0.6, 0.6, 0.3, 0., 0.}) {
+    driven.emplace_back(2. + x, 1.7, 0.3);
+  }
+  const std::vector<Rigid2> carried(8, Rigid2(12.2, 3.1, 1.));
+  const std::string drive = directory_.Write(
+      "drive.json", DriveText(testing::TwoRooms(), driven, carried));
   const ProgramResult result =
       RunTestProgram({"relocalize", "--map", map_, "--scan", drive, "--result",
                       File("found.json"), "--report", File("report")});
@@ -179,8 +185,8 @@ TEST_F(ScanLocalizationTest, FollowsADriveAndFindsARobotThatIsCarriedAway) {
   const Json json = ParseFile("found.json")["scans"].at(0);
   EXPECT_TRUE(json["localized"]);
   EXPECT_EQ(json["state"], "located");
-  EXPECT_NEAR(json["T_map_robot"]["x"], poses.back().translation().x(), 0.1);
-  EXPECT_NEAR(json["T_map_robot"]["y"], poses.back().translation().y(), 0.1);
+  EXPECT_NEAR(json["T_map_robot"]["x"], carried[0].translation().x(), 0.1);
+  EXPECT_NEAR(json["T_map_robot"]["y"], carried[0].translation().y(), 0.1);
   EXPECT_THAT(json["history"], SizeIs(Ge(3u)));
   EXPECT_EQ(json["history"].at(0)["state"], "located");
   EXPECT_NEAR(json["history"].at(0)["T_map_robot"]["x"], 2., 0.1);
