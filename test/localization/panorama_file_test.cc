@@ -83,11 +83,26 @@ TEST_F(PanoramaFileTest, AnyBytesAreAnErrorOfOneLine) {
     expect_error(good.substr(
         0, static_cast<size_t>(part * static_cast<double>(good.size()))));
   }
+  int num_harmless = 0;
   for (size_t k = 20; k < good.size(); k += good.size() / 50) {
     std::string bytes = good;
     bytes[k] = static_cast<char>(bytes[k] ^ 0x5a);
-    expect_error(bytes);
+    directory_.Write("map.places", bytes);
+    const absl::StatusOr<DrawnMap> read = ReadPanoramas(path_, key_);
+    if (!read.ok()) {
+      expect_error(bytes);
+      continue;
+    }
+    // Compressed records begin with a few bytes that no checksum covers, such
+    // as the time, and that change nothing.
+    ++num_harmless;
+    EXPECT_TRUE((read->grid.probability == map_.grid.probability).all());
+    EXPECT_EQ(read->panoramas.viewpoints.ranges,
+              map_.panoramas.viewpoints.ranges);
+    EXPECT_EQ(read->panoramas.viewpoints.masks,
+              map_.panoramas.viewpoints.masks);
   }
+  EXPECT_LE(num_harmless, 3);
   expect_error(good + good.substr(8));
 }
 
