@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/localization/probability.h"
 #include "cartographer_sdf/report/closure_table.h"
@@ -17,6 +18,11 @@
 
 namespace cartographer_sdf {
 namespace {
+
+// "agrees with map", ...
+std::string WordsOf(const AuditVerdict verdict) {
+  return absl::StrReplaceAll(AuditVerdictName(verdict), {{"_", " "}});
+}
 
 constexpr double kAuditDegrees = 180. / M_PI;  // of a radian
 
@@ -67,14 +73,14 @@ std::vector<RowStatus> AuditStatuses() {
                            const char* const meaning,
                            const char* const option) {
     return RowStatus{AuditVerdictName(verdict),
-                     absl::StrCat("doubtful: ", AuditVerdictName(verdict)),
-                     Tone::kBad, meaning, option};
+                     absl::StrCat("doubtful: ", WordsOf(verdict)), Tone::kBad,
+                     meaning, option};
   };
   const auto kept = [](const AuditVerdict verdict, const Tone tone,
                        const char* const meaning, const char* const option) {
     return RowStatus{AuditVerdictName(verdict),
-                     absl::StrCat("kept: ", AuditVerdictName(verdict)), tone,
-                     meaning, option};
+                     absl::StrCat("kept: ", WordsOf(verdict)), tone, meaning,
+                     option};
   };
   return {
       doubtful(AuditVerdict::kContradicted,

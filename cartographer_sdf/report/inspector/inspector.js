@@ -86,7 +86,7 @@ function formatValue(measure, value) {
   const unit = measure.unit ? `\u00a0${measure.unit}` : "";
   const step = 10 ** -measure.decimals;
   // Nothing is certain, nor impossible.
-  if (measure.name === "probability" && value > 100 - step / 2) return `>\u00a0${(100 - step).toFixed(measure.decimals)}${unit}`;
+  if (measure.name === "probability" && value >= 100 - step / 2) return `>\u00a0${(100 - step).toFixed(measure.decimals)}${unit}`;
   if (measure.name === "probability" && value < step / 2) return `<\u00a0${step.toFixed(measure.decimals)}${unit}`;
   return value.toFixed(measure.decimals) + unit;
 }
