@@ -445,7 +445,7 @@ function labelOfCandidate(row) {
   const k = row.table.measures.findIndex((measure) => measure.name === "probability");
   const share = k < 0 ? "" : ` ${formatValue(row.table.measures[k], row.values[k])}`;
   const sign = row.state.tone === "good" ? "\u2713 " : "";
-  return `${sign}${row.number}:${share}`;
+  return `${sign}${row.number}${share ? ":" : ""}${share}`;
 }
 function candidateRows() {
   return run.tables.flatMap((table) => table.rows.filter((row) => row.T_map_robot));
@@ -1175,7 +1175,7 @@ function paintOverlay(overlay, picture, look) {
 
 // The map around a candidate, with what the robot saw.
 function showCandidate(pane, row) {
-  const children = [make("h3", {}, `${row.table.heading.replace(/s$/, "")} ${row.number}`), statusLine(row)];
+  const children = [make("h3", {}, `${row.table.heading.replace(/(ch)es$|s$/, "$1")} ${row.number}`), statusLine(row)];
   if (row.T_map_robot) {
     const picture = make("canvas", {class: "overlay", role: "img", width: 640, height: 480,
       "aria-label": `The map around candidate ${row.number}${run.echoes.length > 0 ? ", with the echoes of the scan" : ""}`});
