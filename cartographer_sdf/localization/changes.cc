@@ -16,7 +16,7 @@
 namespace cartographer_sdf {
 namespace {
 
-constexpr double kCellSize = 0.1;
+constexpr double kChangeCellSize = 0.1;
 // A wall point this near to a wall of the other map is unchanged, and changed
 // this far from all of them, in free space [m]. Between the two, it says
 // nothing.
@@ -29,13 +29,13 @@ constexpr int kReach = 2;
 // Of a box, with the cells that it begins: some 0.3 m of wall.
 constexpr double kMinExtent = 0.35;
 constexpr size_t kMaxNumChanges = 1000;
-constexpr size_t kMaxNumPairs = 1000;
+constexpr size_t kMaxNumChangePairs = 1000;
 
-using Cell = std::pair<int, int>;
+using ChangeCell = std::pair<int, int>;
 
-Cell CellOf(const Eigen::Vector2d& point) {
-  return {static_cast<int>(std::floor(point.x() / kCellSize)),
-          static_cast<int>(std::floor(point.y() / kCellSize))};
+ChangeCell ChangeCellOf(const Eigen::Vector2d& point) {
+  return {static_cast<int>(std::floor(point.x() / kChangeCellSize)),
+          static_cast<int>(std::floor(point.y() / kChangeCellSize))};
 }
 
 // What the pairs say of a cell that has wall in one of the two maps.
@@ -43,12 +43,12 @@ struct Opinion {
   int num_changed = 0;
   int num_unchanged = 0;
 };
-using Opinions = std::map<Cell, Opinion>;
+using Opinions = std::map<ChangeCell, Opinion>;
 
 // The cells of the map frame in which one pair sees wall changed or unchanged.
 struct Seen {
-  std::set<Cell> changed;
-  std::set<Cell> unchanged;
+  std::set<ChangeCell> changed;
+  std::set<ChangeCell> unchanged;
 };
 
 // Looks the wall points up in the model.
@@ -71,24 +71,25 @@ Seen Compare(const SurfaceModel& model, const SurfaceModel& points,
                                            static_cast<Eigen::Index>(cell.y()));
     const double distance = 1e-3 * std::abs(found.distance);
     if (distance <= kUnchangedDistance) {
-      seen.unchanged.insert(CellOf(T_map_points * point.position));
+      seen.unchanged.insert(ChangeCellOf(T_map_points * point.position));
     } else if (found.observed && found.free >= 255. * kMinFree &&
                distance >= kChangedDistance) {
-      seen.changed.insert(CellOf(T_map_points * point.position));
+      seen.changed.insert(ChangeCellOf(T_map_points * point.position));
     }
   }
   return seen;
 }
 
 void Add(const Seen& seen, Opinions* const opinions) {
-  for (const Cell& cell : seen.changed) ++(*opinions)[cell].num_changed;
-  for (const Cell& cell : seen.unchanged) ++(*opinions)[cell].num_unchanged;
+  for (const ChangeCell& cell : seen.changed) ++(*opinions)[cell].num_changed;
+  for (const ChangeCell& cell : seen.unchanged)
+    ++(*opinions)[cell].num_unchanged;
 }
 
 // Cells that more pairs see changed than see wall unchanged there or next to
 // it.
-std::set<Cell> ChangedCells(const Opinions& opinions) {
-  std::set<Cell> changed;
+std::set<ChangeCell> ChangedCells(const Opinions& opinions) {
+  std::set<ChangeCell> changed;
   for (const auto& [cell, opinion] : opinions) {
     if (opinion.num_changed == 0) continue;
     int num_unchanged = 0;
@@ -105,8 +106,8 @@ std::set<Cell> ChangedCells(const Opinions& opinions) {
 }
 
 // Takes a connected piece out of the cells.
-std::vector<Cell> TakePiece(std::set<Cell>* const cells) {
-  std::vector<Cell> piece = {*cells->begin()};
+std::vector<ChangeCell> TakePiece(std::set<ChangeCell>* const cells) {
+  std::vector<ChangeCell> piece = {*cells->begin()};
   cells->erase(cells->begin());
   for (size_t k = 0; k < piece.size(); ++k) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
@@ -122,17 +123,19 @@ std::vector<Cell> TakePiece(std::set<Cell>* const cells) {
   return piece;
 }
 
-Change MakeChange(const ChangeKind kind, const std::vector<Cell>& piece) {
+Change MakeChange(const ChangeKind kind, const std::vector<ChangeCell>& piece) {
   Change change{
-      kind, {}, kCellSize * kCellSize * static_cast<double>(piece.size())};
+      kind,
+      {},
+      kChangeCellSize * kChangeCellSize * static_cast<double>(piece.size())};
   for (const auto& [x, y] : piece) {
-    change.box.extend(kCellSize * Eigen::Vector2d(x, y));
-    change.box.extend(kCellSize * Eigen::Vector2d(x + 1, y + 1));
+    change.box.extend(kChangeCellSize * Eigen::Vector2d(x, y));
+    change.box.extend(kChangeCellSize * Eigen::Vector2d(x + 1, y + 1));
   }
   return change;
 }
 
-void AddChanges(const ChangeKind kind, std::set<Cell> cells,
+void AddChanges(const ChangeKind kind, std::set<ChangeCell> cells,
                 std::vector<Change>* const changes) {
   while (!cells.empty()) {
     const Change change = MakeChange(kind, TakePiece(&cells));
@@ -152,7 +155,7 @@ std::vector<Change> FindChanges(const PlacedMap& map, const PlacedMap& query,
                                 const std::vector<PairPose>& agreeing,
                                 const Executor& executor) {
   const std::vector<size_t> chosen = EvenlySpacedIndices(
-      agreeing.size(), std::min(agreeing.size(), kMaxNumPairs));
+      agreeing.size(), std::min(agreeing.size(), kMaxNumChangePairs));
   std::vector<Seen> appeared(chosen.size()), vanished(chosen.size());
   executor(chosen.size(), [&](const size_t k) {
     const PairPose& pair = agreeing[chosen[k]];
@@ -183,17 +186,17 @@ std::vector<Change> FindChanges(const PlacedMap& map, const PlacedMap& query,
 }
 
 double ChangedArea(const std::vector<Change>& changes) {
-  std::set<Cell> cells;
+  std::set<ChangeCell> cells;
   for (const Change& change : changes) {
-    const Cell last =
-        CellOf(change.box.max() - Eigen::Vector2d::Constant(0.5 * kCellSize));
-    const Cell first =
-        CellOf(change.box.min() + Eigen::Vector2d::Constant(0.5 * kCellSize));
+    const ChangeCell last = ChangeCellOf(
+        change.box.max() - Eigen::Vector2d::Constant(0.5 * kChangeCellSize));
+    const ChangeCell first = ChangeCellOf(
+        change.box.min() + Eigen::Vector2d::Constant(0.5 * kChangeCellSize));
     for (int x = first.first; x <= last.first; ++x) {
       for (int y = first.second; y <= last.second; ++y) cells.emplace(x, y);
     }
   }
-  return kCellSize * kCellSize * static_cast<double>(cells.size());
+  return kChangeCellSize * kChangeCellSize * static_cast<double>(cells.size());
 }
 
 std::string DescribeChanges(const std::vector<Change>& changes) {

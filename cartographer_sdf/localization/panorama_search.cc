@@ -20,7 +20,7 @@ namespace {
 constexpr uint8_t kMaxBeamCost = 15;
 constexpr uint8_t kUnknownCost = 6;
 // So many beams fit into the sums of bytes.
-constexpr int kBlockSize = 255 / kMaxBeamCost;
+constexpr int kSearchBlockSize = 255 / kMaxBeamCost;
 // Poses that are kept for each that is returned: neighbours are near each
 // other.
 constexpr size_t kNumKeptPerPose = 10;
@@ -100,8 +100,8 @@ bool ComputeCosts(const std::vector<SearchBeam>& beams,
                   const int bound, TurnCosts* const costs) {
   costs->fill(0);
   std::array<uint8_t, kNumDirections> sums;
-  for (size_t begin = 0; begin < beams.size(); begin += kBlockSize) {
-    const size_t end = std::min(begin + kBlockSize, beams.size());
+  for (size_t begin = 0; begin < beams.size(); begin += kSearchBlockSize) {
+    const size_t end = std::min(begin + kSearchBlockSize, beams.size());
     sums.fill(0);
     for (size_t k = begin; k < end; ++k) {
       AddBeam(beams[k], ranges, masks, sums.data());

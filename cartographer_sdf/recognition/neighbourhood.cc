@@ -23,7 +23,7 @@ constexpr double kNoiseRatio = 0.01;
 
 // Edge length of the tiles in which ground is counted [m]: some are filled by
 // the points of any overlap that is looked at.
-constexpr double kTileSize = 2.;
+constexpr double kGroundTileSize = 2.;
 
 struct NeighbourhoodTerm {
   const char* name;
@@ -178,7 +178,7 @@ class NeighbourhoodMeasurer {
     return OverlapTiles(maps_.references.places->at(reference).surface,
                         maps_.queries.places->at(query).surface, pose,
                         RelativePose(maps_.references, reference_, reference),
-                        kTileSize);
+                        kGroundTileSize);
   }
 
   // Adds the wall of `points` in metres: each sampled point also stands for

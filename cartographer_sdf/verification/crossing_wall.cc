@@ -19,7 +19,7 @@ constexpr double kMinOccupied = 0.5;
 constexpr double kMinFree = 0.4;
 // Directions of walls that are tried. Between two of them, a wall of 3 m leaves
 // its line by less than the width of a line.
-constexpr int kNumDirections = 60;
+constexpr int kNumWallDirections = 60;
 // Width of a line, and the largest gap in a stretch of wall [m]; more in grids
 // of large cells.
 constexpr double kLineWidth = 0.1;
@@ -64,8 +64,8 @@ double LongestStretch(const std::vector<Eigen::Vector2d>& points,
   double longest = 0.;
   // For each point the line that it lies on, and where along it.
   std::vector<std::pair<int, double>> on_lines(points.size());
-  for (int k = 0; k < kNumDirections; ++k) {
-    const double angle = k * M_PI / kNumDirections;
+  for (int k = 0; k < kNumWallDirections; ++k) {
+    const double angle = k * M_PI / kNumWallDirections;
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
     const Eigen::Vector2d across(-along.y(), along.x());
     for (size_t i = 0; i < points.size(); ++i) {
