@@ -69,7 +69,7 @@ closing.outlier_rejection.max_translation_error_meters = 0.3
 -- (relocalize, merge, live); log-odds.
 local placement = SDF_GLOBAL_CONSTRAINTS.localization.placement
 -- Least total evidence of all submaps. Larger: fewer answers, fewer wrong ones.
-placement.min_score = 6.5
+placement.min_score = 7.5
 -- Least lead over the best other answer. Larger: more refusals where places
 -- look alike.
 placement.min_lead = 4.

@@ -178,9 +178,12 @@ Localization LocalizeIn(const LocalizationOptions& options,
     for (const size_t vote : result.placements.front().votes) {
       agreeing.push_back(result.matches[vote].pair);
     }
+    StageClock clock(on_stage, &result.stage_seconds);
+    clock.Begin("find changes");
     result.changes =
         FindChanges({&map.places, &map_layout}, {&query.places, &query_layout},
                     agreeing, executor);
+    clock.End();
   }
   return result;
 }

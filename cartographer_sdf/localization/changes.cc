@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/geometry/evenly_spaced.h"
+#include "cartographer_sdf/place/surface_cell_lookup.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -54,25 +55,16 @@ struct Seen {
 // Looks the wall points up in the model.
 Seen Compare(const SurfaceModel& model, const SurfaceModel& points,
              const Rigid2& T_model_points, const Rigid2& T_map_points) {
-  const Rigid2 T_grid_points =
-      model.geometry.T_submap_grid.Inverse() * T_model_points;
-  const double cells_per_meter = 1. / model.geometry.resolution;
+  const SurfaceCellLookup lookup(model, T_model_points);
   Seen seen;
   for (const SurfacePoint& point : points.walls) {
     if (point.weight < kMinOccupied) continue;
-    const Eigen::Vector2d cell =
-        cells_per_meter * (T_grid_points * point.position);
-    if (!(cell.x() >= 0. && cell.y() >= 0. &&
-          cell.x() < model.geometry.size.x() &&
-          cell.y() < model.geometry.size.y())) {
-      continue;
-    }
-    const SurfaceCell& found = model.cells(static_cast<Eigen::Index>(cell.x()),
-                                           static_cast<Eigen::Index>(cell.y()));
-    const double distance = 1e-3 * std::abs(found.distance);
+    const SurfaceCell* const cell = lookup.Find(point.position);
+    if (cell == nullptr) continue;
+    const double distance = 1e-3 * std::abs(cell->distance);
     if (distance <= kUnchangedDistance) {
       seen.unchanged.insert(ChangeCellOf(T_map_points * point.position));
-    } else if (found.observed && found.free >= 255. * kMinFree &&
+    } else if (cell->observed && cell->free >= 255. * kMinFree &&
                distance >= kChangedDistance) {
       seen.changed.insert(ChangeCellOf(T_map_points * point.position));
     }

@@ -85,7 +85,8 @@ struct Localization {
   // Among so many pairs that it makes overlap; 0 if it was not confirmed.
   int num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
-  // What changed since the map was made, if localised and asked for.
+  // What changed since the map was made. Filled in by LocalizeIn
+  // (apps/session.h), if localised.
   std::vector<Change> changes;
   std::vector<std::pair<std::string, double>> stage_seconds;
 };

@@ -290,18 +290,19 @@ bool ScanSession::HasMoved(const Rigid2& T_odometry_robot) const {
 ScanSession::LookFit ScanSession::FitLook(const Sweep& sweep,
                                           const Rigid2& T_last_robot,
                                           const Rigid2& T_grid_last) const {
-  const Rigid2 predicted = T_grid_last * T_last_robot;
+  const Rigid2 predicted_T_grid_robot = T_grid_last * T_last_robot;
   const PoseTolerance tolerance{
       kOdometryError +
           kRelativeOdometryError * T_last_robot.translation().norm(),
       kRotationError +
           kRelativeOdometryError * std::abs(T_last_robot.rotation())};
-  const std::optional<RegisteredSweep> registered = RegisterSweep(
-      map_.rays.field, sweep, kNoLimit, kLookKernelScale, predicted);
+  const std::optional<RegisteredSweep> registered =
+      RegisterSweep(map_.rays.field, sweep, kNoLimit, kLookKernelScale,
+                    predicted_T_grid_robot);
   const bool is_near =
-      registered &&
-      AreNear(registered->T_grid_robot, predicted, sweep.centre, tolerance);
-  LookFit fit{is_near ? registered->T_grid_robot : predicted,
+      registered && AreNear(registered->T_grid_robot, predicted_T_grid_robot,
+                            sweep.centre, tolerance);
+  LookFit fit{is_near ? registered->T_grid_robot : predicted_T_grid_robot,
               registered ? registered->covariance
                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity()),
               {}};

@@ -39,8 +39,8 @@ struct ScanSessionOptions {
   double independent_distance_meters = 3.;
   double independent_rotation = 6.;
   // Added to PresenceWeights::bias and ::lead, times the logarithm of that
-  // number. Learned on drives through several buildings, see
-  // scripts/measure_scan_localization.py.
+  // number. Chosen on drives through several buildings, each judged by what
+  // suits the others; more makes wrong answers certain.
   double presence_bias_per_log = 0.5;
   double presence_lead_per_log = 5.;
   // A scan contradicts the answer if more of its beams cross walls, or end in

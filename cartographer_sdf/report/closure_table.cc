@@ -269,4 +269,14 @@ std::optional<double> WallDistanceInGraph(
   return std::sqrt(sum / count);
 }
 
+InspectedRow MatchRowOf(const Match& match, const std::string& status,
+                        const std::string& remark) {
+  InspectedRow row;
+  row.status = status;
+  row.remark = remark;
+  row.pair = match.pair;
+  row.values = MatchValues(match);
+  return row;
+}
+
 }  // namespace cartographer_sdf

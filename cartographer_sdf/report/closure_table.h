@@ -57,6 +57,11 @@ void FinishTable(InspectedTable* table);
 [[nodiscard]] std::optional<double> WallDistanceInGraph(
     const std::vector<Closure>& closures);
 
+// The row of a match, with the values of MatchMeasures.
+[[nodiscard]] InspectedRow MatchRowOf(const Match& match,
+                                      const std::string& status,
+                                      const std::string& remark);
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_REPORT_CLOSURE_TABLE_H_

@@ -124,22 +124,24 @@ Json AnswerJson(const Localization& result, const char* const certain,
   if (result.score && result.runner_up_score) {
     runner_up = ProbabilityOf(*result.runner_up_score, result.score);
   }
-  return {{certain, result.T_map_query.has_value()},
-          {"verdict", LocalizationVerdictName(result.verdict)},
-          {"reason", result.reason},
-          {pose, ToJson(result.T_map_query)},
-          {"probability", ToJson(best)},
-          {"runner_up_probability", ToJson(runner_up)},
-          {"score", ToJson(result.score)},
-          {"runner_up_score", ToJson(result.runner_up_score)},
-          {"agreeing", result.num_agreeing},
-          {"contradicting", result.num_contradicting},
-          {"compared", result.num_compared},
-          {"crossed", result.crossing_walls.size()},
-          {"parts", PartsJson(result.parts)},
-          {"jumps", JumpsJson(result.parts)},
-          {"changed_area", ChangedArea(result.changes)},
-          {"changes", ChangesJson(result.changes)}};
+  return {
+      {certain, result.T_map_query.has_value()},
+      {"verdict", LocalizationVerdictName(result.verdict)},
+      {"reason", result.reason},
+      {pose, ToJson(result.T_map_query)},
+      {"probability", ToJson(best)},
+      {"runner_up_probability", ToJson(runner_up)},
+      {"score", ToJson(result.score)},
+      {"runner_up_score", ToJson(result.runner_up_score)},
+      {"agreeing", result.num_agreeing},
+      {"contradicting", result.num_contradicting},
+      {"compared", result.num_compared},
+      {"crossed", result.crossing_walls.size()},
+      {"parts", PartsJson(result.parts)},
+      {"jumps", JumpsJson(result.parts)},
+      {"changed_area",
+       result.T_map_query ? Json(ChangedArea(result.changes)) : Json(nullptr)},
+      {"changes", ChangesJson(result.changes)}};
 }
 
 Json LinksJson(const std::vector<SessionLink>& links) {
@@ -200,10 +202,14 @@ Json ToJson(const SubmapId& id) {
 }
 
 Json ToJson(const MapQuality& quality) {
+  // Where nothing was compared, nothing is known.
+  const auto known = [&quality](const double value) {
+    return quality.num_pairs > 0 ? Json(value) : Json(nullptr);
+  };
   return {{"pairs", quality.num_pairs},
-          {"hit_ratio", quality.hit_ratio},
-          {"contradiction_ratio", quality.contradiction_ratio},
-          {"wall_distance", quality.wall_distance}};
+          {"hit_ratio", known(quality.hit_ratio)},
+          {"contradiction_ratio", known(quality.contradiction_ratio)},
+          {"wall_distance", known(quality.wall_distance)}};
 }
 
 Json ToJson(const RunDescription& run) {

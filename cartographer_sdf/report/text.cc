@@ -66,4 +66,8 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
   return table;
 }
 
+std::string FormatScore(const std::optional<double>& score) {
+  return score ? absl::StrFormat("%.1f", *score) : "none";
+}
+
 }  // namespace cartographer_sdf

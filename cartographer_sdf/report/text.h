@@ -4,6 +4,7 @@
 #ifndef CARTOGRAPHER_SDF_REPORT_TEXT_H_
 #define CARTOGRAPHER_SDF_REPORT_TEXT_H_
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,9 @@ namespace cartographer_sdf {
 // is empty.
 [[nodiscard]] std::string FormatTable(
     const std::vector<std::vector<std::string>>& rows);
+
+// "12.3", or "none".
+[[nodiscard]] std::string FormatScore(const std::optional<double>& score);
 
 }  // namespace cartographer_sdf
 

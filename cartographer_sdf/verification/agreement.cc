@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "cartographer_sdf/place/surface_cell_lookup.h"
+
 namespace cartographer_sdf {
 namespace {
 
@@ -16,43 +18,13 @@ constexpr size_t kChunkSize = 64;
 constexpr double kTileSize = 2.;
 constexpr double kFullTileWallLength = 0.4;
 
-// Cells of a model under points of another frame.
-class CellLookup {
- public:
-  CellLookup(const SurfaceModel& model, const Rigid2& T_model_points)
-      : model_(model) {
-    const Rigid2 T_grid_points =
-        model.geometry.T_submap_grid.Inverse() * T_model_points;
-    const double cells_per_meter = 1. / model.geometry.resolution;
-    rotation_ = cells_per_meter * T_grid_points.RotationMatrix();
-    translation_ = cells_per_meter * T_grid_points.translation();
-  }
-
-  // Null outside of the model.
-  [[nodiscard]] const SurfaceCell* Find(const Eigen::Vector2d& point) const {
-    const Eigen::Vector2d cell = rotation_ * point + translation_;
-    if (!(cell.x() >= 0. && cell.y() >= 0. &&
-          cell.x() < model_.geometry.size.x() &&
-          cell.y() < model_.geometry.size.y())) {
-      return nullptr;
-    }
-    return &model_.cells(static_cast<Eigen::Index>(cell.x()),
-                         static_cast<Eigen::Index>(cell.y()));
-  }
-
- private:
-  const SurfaceModel& model_;
-  Eigen::Matrix2d rotation_;
-  Eigen::Vector2d translation_;
-};
-
 // Calls visit(point, cell) for the first points that fall into the model.
 template <typename Visitor>
 void VisitCells(const SurfaceModel& model,
                 const std::vector<SurfacePoint>& points,
                 const Rigid2& T_model_points, const int max_num_points,
                 const Visitor& visit) {
-  const CellLookup lookup(model, T_model_points);
+  const SurfaceCellLookup lookup(model, T_model_points);
   const size_t count =
       std::min(static_cast<size_t>(max_num_points), points.size());
   std::array<const SurfaceCell*, kChunkSize> cells;
@@ -218,7 +190,7 @@ PairAgreement MeasurePairAgreement(const AgreementOptions& options,
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
                    const Rigid2& T_reference_query, const int max_num_points) {
-  const CellLookup lookup(reference, T_reference_query);
+  const SurfaceCellLookup lookup(reference, T_reference_query);
   const size_t num_points = std::min(query.observed_points.size(),
                                      static_cast<size_t>(max_num_points));
   int count = 0;
@@ -234,7 +206,7 @@ double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
 std::optional<Eigen::Vector2d> OverlapCentroid(
     const SurfaceModel& reference, const SurfaceModel& query,
     const Rigid2& T_reference_query) {
-  const CellLookup lookup(reference, T_reference_query);
+  const SurfaceCellLookup lookup(reference, T_reference_query);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
   for (const Eigen::Vector2d& point : query.observed_points) {
@@ -252,7 +224,7 @@ std::set<TileIndex> OverlapTiles(const SurfaceModel& reference,
                                  const Rigid2& T_reference_query,
                                  const Rigid2& T_frame_reference,
                                  const double tile_size) {
-  const CellLookup lookup(reference, T_reference_query);
+  const SurfaceCellLookup lookup(reference, T_reference_query);
   const Rigid2 T_frame_query = T_frame_reference * T_reference_query;
   const size_t num_points = std::min(query.observed_points.size(),
                                      static_cast<size_t>(kMaxNumOverlapPoints));

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "cartographer_sdf/place/surface_cell_lookup.h"
+
 namespace cartographer_sdf {
 namespace {
 
@@ -32,23 +34,13 @@ constexpr double kMaxGapInCells = 2.5;
 std::vector<Eigen::Vector2d> PointsInFreeSpace(const SurfaceModel& model,
                                                const SurfaceModel& points,
                                                const Rigid2& T_model_points) {
-  const Rigid2 T_grid_points =
-      model.geometry.T_submap_grid.Inverse() * T_model_points;
-  const double cells_per_meter = 1. / model.geometry.resolution;
+  const SurfaceCellLookup lookup(model, T_model_points);
   std::vector<Eigen::Vector2d> crossing;
   for (const SurfacePoint& point : points.walls) {
     if (point.weight < kMinOccupied) continue;
-    const Eigen::Vector2d cell =
-        cells_per_meter * (T_grid_points * point.position);
-    if (!(cell.x() >= 0. && cell.y() >= 0. &&
-          cell.x() < model.geometry.size.x() &&
-          cell.y() < model.geometry.size.y())) {
-      continue;
-    }
-    const SurfaceCell& found = model.cells(static_cast<Eigen::Index>(cell.x()),
-                                           static_cast<Eigen::Index>(cell.y()));
-    if (found.observed && found.free >= 255. * kMinFree &&
-        std::abs(found.distance) >= 1e3 * kMinDistance) {
+    const SurfaceCell* const cell = lookup.Find(point.position);
+    if (cell != nullptr && cell->observed && cell->free >= 255. * kMinFree &&
+        std::abs(cell->distance) >= 1e3 * kMinDistance) {
       crossing.push_back(point.position);
     }
   }

@@ -18,7 +18,7 @@ namespace cartographer_sdf {
 // Returns the length [m] of the longest straight and unbroken stretch of wall
 // of either submap that lies in the observed free space of the other, at least
 // 0.5 m from its walls; 0 if there is none. Takes time proportional to the
-// number of wall points, and some 0.1 ms for each hundred of those that cross.
+// number of wall points; more for those that cross.
 [[nodiscard]] double LongestCrossingWall(const SurfaceModel& reference,
                                          const SurfaceModel& query,
                                          const Rigid2& T_reference_query);

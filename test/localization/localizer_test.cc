@@ -35,6 +35,8 @@ class LocalizeTest : public ::testing::Test {
     }
     // Nothing beyond the votes is asked for.
     options_.max_num_confirmed_pairs = 0;
+    // Whatever is shipped.
+    options_.placement.min_score = 6.5;
   }
 
   // The place of the query in the west room; `error` as the query sees it.

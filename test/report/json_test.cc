@@ -81,5 +81,21 @@ TEST(JsonTest, WritesPosesIdsAndWhatMayBeAbsent) {
   EXPECT_EQ(ToJson(std::optional<double>()), nullptr);
 }
 
+TEST(JsonTest, WhatWasNotComparedIsNotKnown) {
+  const Json nothing = ToJson(MapQuality());
+  EXPECT_EQ(nothing["pairs"], 0);
+  for (const char* const name :
+       {"hit_ratio", "contradiction_ratio", "wall_distance"}) {
+    EXPECT_TRUE(nothing[name].is_null()) << name;
+  }
+  const Json some = ToJson(MapQuality{3, 0.9, 0.01, 0.04});
+  EXPECT_EQ(some["pairs"], 3);
+  EXPECT_EQ(some["hit_ratio"], 0.9);
+  EXPECT_EQ(some["contradiction_ratio"], 0.01);
+  EXPECT_EQ(some["wall_distance"], 0.04);
+  // Nor has anything changed or stayed where the query was not found.
+  EXPECT_TRUE(ToJson(Localization())["changed_area"].is_null());
+}
+
 }  // namespace
 }  // namespace cartographer_sdf::json_test
