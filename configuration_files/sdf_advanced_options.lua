@@ -167,6 +167,9 @@ SDF_GLOBAL_CONSTRAINTS = {
               margin = 0.69,
               bias = -15.,
             },
+            -- Least score of a match by itself; with its neighbourhood, see
+            -- support. Larger: fewer wrong matches, fewer matches.
+            min_score = 4.,
             -- [m^2] Least area observed by both.
             min_overlap_area = 10.,
             -- Smaller eigenvalue of the scatter of wall normals: 0 where walls
@@ -276,6 +279,9 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- this many times over. Larger: more recall where a place was seen
         -- often, slower.
         max_num_rounds = 4,
+        -- An accepted match also proposes poses to the unmatched pairs of all
+        -- submaps up to so many indices from its own. 0: to none.
+        max_proposal_distance = 4,
         -- Score = log-odds of being right. Learned by scripts/learn_score.py
         -- --neighbours on the same maps as score_weights.
         weights = {
@@ -311,6 +317,21 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- tolerates worse odometry, and more equal rooms.
         max_drift_per_meter = 0.04,
         max_rotation_drift_per_sqrt_meter = 0.04,
+      },
+      -- A match that is certain by itself supports likely ones nearby, and those
+      -- without support must be certain themselves: see
+      -- support.min_unsupported_score. Applied where neighbourhoods are verified.
+      support = {
+        -- Least score of a match that others support; log-odds. From
+        -- judgement.min_score on, it supports in its turn. Larger: fewer matches
+        -- in noisy maps and outdoors.
+        min_supported_score = 1.,
+        -- A match and one that supports it are at most so many submaps apart, on
+        -- either side. Larger: supports more, and relies on more odometry.
+        max_index_distance = 4,
+        -- [m], [rad] How near a match must be to where the other puts it.
+        max_distance_meters = 0.5,
+        max_rotation = 0.1,
       },
     },
     -- From matches to an optimised pose graph.

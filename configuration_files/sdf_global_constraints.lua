@@ -8,7 +8,7 @@
 --
 --   include "sdf_global_constraints.lua"
 --   local recognition = SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition
---   recognition.match.verification.judgement.min_score = 5.
+--   recognition.support.min_unsupported_score = 8.
 --   return SDF_GLOBAL_CONSTRAINTS
 --
 -- and pass it with --configuration_directory and --configuration_basename.
@@ -20,8 +20,6 @@ local loop_closing = SDF_GLOBAL_CONSTRAINTS.loop_closing
 -- When the relative pose of two submaps is accepted. Scores are log-odds of
 -- being right.
 local judgement = loop_closing.recognition.match.verification.judgement
--- Least score. Larger: fewer wrong matches, fewer matches.
-judgement.min_score = 4.
 -- Least lead over the best other pose of the pair; below it the pair is
 -- ambiguous. Larger: more pairs are refused where rooms look alike.
 judgement.min_margin = 0.7
@@ -41,6 +39,10 @@ recognition.use_retrieval = true
 -- which resolves perceptual aliasing and finds matches that a pair's own
 -- features miss. false: each pair is verified alone; faster.
 recognition.verify_neighbourhoods = true
+-- Least score of a match that stands alone; log-odds. From it on, a match
+-- supports likely ones around it, which need not reach it. Larger: fewer wrong
+-- matches, fewer matches.
+recognition.support.min_unsupported_score = 7.
 
 -- Which closures enter the pose graph.
 local closing = loop_closing.closing

@@ -58,12 +58,19 @@ class Drives(scans.Measurement):
                      "--result", result)
         return json.loads(result.read_text())["scans"]
 
-    def node_at(self, s, seconds):
-        """The index of the node whose scan was taken then."""
+    def times(self, s):
         path = self.query(s.query)[0]
         if path not in self.times_of:
             self.times_of[path] = node_times(path)
-        return min(self.times_of[path], key=lambda entry: abs(entry[0] - seconds))[1]
+        return self.times_of[path]
+
+    def first_scan_at(self, s, seconds):
+        """When the first scan was taken from then on; a history counts from there."""
+        return min(time for time, _ in self.times(s) if time > seconds - 1e-6)
+
+    def node_at(self, s, seconds):
+        """The index of the node whose scan was taken then."""
+        return min(self.times(s), key=lambda entry: abs(entry[0] - seconds))[1]
 
     def right_poses_at(self, s, seconds):
         """None where the truth does not know."""
@@ -73,6 +80,10 @@ class Drives(scans.Measurement):
         if index not in scans.read_truth_once(self.query(s.query)[1]):
             return None
         return self.right_poses(s, index)
+
+    def was_in_map(self, s, seconds):
+        index = self.node_at(s, seconds)
+        return s.kind == "own" and self.is_in_map(s, index)
 
 
 def pose(json_pose):
@@ -93,8 +104,9 @@ def judge_step(measurement, s, start, step):
 
 
 def judge_drive(measurement, s, result):
-    """{seconds: (certain and right, ever certain and wrong, best right, CPU [ms], metres)}"""
-    start, judged, last, wrong = result["start_seconds"], {}, None, False
+    """{seconds: (certain and right, ever certain and wrong, best right, CPU [ms], metres, in the map)}"""
+    start = measurement.first_scan_at(s, result["start_seconds"])
+    judged, last, wrong = {}, None, False
     steps = list(result["history"])
     for limit in CHECKED_SECONDS:
         while steps and steps[0]["seconds"] <= limit:
@@ -107,7 +119,7 @@ def judge_drive(measurement, s, result):
         if last is not None:
             rights, step = last
             judged[limit] = (rights[1] and not wrong, wrong, rights[3], step["cpu_milliseconds"],
-                             step["meters"])
+                             step["meters"], measurement.was_in_map(s, start + step["seconds"]))
     return judged
 
 
@@ -120,7 +132,9 @@ def located_after(results):
 
 def own_table(measurement, judged, limit):
     lines = ["| drives in map | starts | certain and right | certain and wrong | best candidate right "
-             "| driven, median [m] | CPU median [ms] |", "| --- | --- | --- | --- | --- | --- | --- |"]
+             "| in the map | of these: certain and right | best candidate right "
+             "| driven, median [m] | CPU median [ms] |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     table = []
     for s, results in judged:
         rows = [d[limit] for d in (judge_drive(measurement, s, r) for r in results) if limit in d]
@@ -128,8 +142,11 @@ def own_table(measurement, judged, limit):
         if not count:
             continue
         right = sum(r[0] for r in rows) / count
-        table.append((right, "| %s | %d | %.0f %% | %d | %.0f %% | %.1f | %.0f |" % (
-            s.name, count, 100. * right, sum(r[1] for r in rows), 100. * sum(r[2] for r in rows) / count,
+        inside = [r for r in rows if r[5]]
+        table.append((right, "| %s | %d | %s | %d | %s | %d | %s | %s | %.1f | %.0f |" % (
+            s.name, count, scans.fraction(rows, lambda r: r[0]), sum(r[1] for r in rows),
+            scans.fraction(rows, lambda r: r[2]), len(inside), scans.fraction(inside, lambda r: r[0]),
+            scans.fraction(inside, lambda r: r[2]),
             scans.median([r[4] for r in rows]), scans.median([r[3] for r in rows]))))
     return lines + [line for _, line in sorted(table)] + [""]
 
@@ -158,8 +175,9 @@ def report(arguments, judged, measurement):
              "at commit %s on %s, one thread. CPU times are those of all scans so far after loading the map; "
              "other programs ran beside it. Right is a pose within 0.5 m and 10 degrees of the truth, wrong "
              "one beyond 1 m or 15 degrees; a drive counts as wrong if it ever was certain of a wrong pose. "
-             "Every start counts, also where the map never was.\n" % (
-                 measuring.commit_name(), measuring.processor())]
+             "Every start counts, also where the map never was; in the map are the drives that end within %g m of "
+             "a place from which the map was made.\n" % (
+                 measuring.commit_name(), measuring.processor(), scans.IN_MAP_METERS)]
     for limit, target in zip(CHECKED_SECONDS, ("80 % certain and right, none wrong, best candidate 95 %, "
                                                "100 ms", "95 %, none, 99 %, 100 ms")):
         lines += ["## After %g s\n" % limit, "Target: %s.\n" % target]

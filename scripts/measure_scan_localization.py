@@ -29,6 +29,7 @@ import split_map
 # Right, and wrong: a pose that is off by more. Between lies what maps bend.
 RIGHT_METERS, RIGHT_DEGREES, WRONG_METERS, WRONG_DEGREES = .5, 10., 1., 15.
 MIN_POINTS = 20
+IN_MAP_METERS = 2.
 CERTAIN = .99
 
 # kind is "own" (its own building), "stranger" (another one) or "symmetric".
@@ -296,11 +297,21 @@ class Measurement:
             middle = (260 * .05, 260 * .05, 0.)
             turns = [(0., 0., 2 * math.pi * k / FOLDS[s.map]) for k in range(FOLDS[s.map])]
             return [compose(compose(middle, t), compose(inverse(middle), world)) for t in turns]
+        poses, truth, nearest = self.nearest_node(s, world)
+        return [compose(poses[nearest], compose(inverse(truth[nearest]), world))]
+
+    def nearest_node(self, s, world):
+        """(poses in the map, true poses, the index of the node of the map nearest to a true pose)"""
         truth = read_truth_once(self.data / (TRUTHS.get(s.map, s.map) + ".truth.csv"))
         poses = self.nodes(self.map(s.map))[0]
-        nearest = min((i for i in poses if i in truth),
-                      key=lambda i: math.hypot(truth[i][0] - world[0], truth[i][1] - world[1]))
-        return [compose(poses[nearest], compose(inverse(truth[nearest]), world))]
+        return poses, truth, min((i for i in poses if i in truth), key=lambda i: math.hypot(
+            truth[i][0] - world[0], truth[i][1] - world[1]))
+
+    def is_in_map(self, s, index):
+        """Whether the robot that made the map came near the place of a node."""
+        world = read_truth_once(self.query(s.query)[1])[index]
+        _, truth, nearest = self.nearest_node(s, world)
+        return math.hypot(truth[nearest][0] - world[0], truth[nearest][1] - world[1]) < IN_MAP_METERS
 
 
 TRUTH_CACHE = {}
@@ -335,6 +346,7 @@ def judge(measurement, s):
         right = next((k for k, c in enumerate(candidates) if is_right(c, poses)), None)
         named = [any(is_right(c, [p]) for c in candidates) for p in poses]
         rows.append({"index": index, "result": result, "right": right,
+                     "in_map": s.kind == "own" and measurement.is_in_map(s, index),
                      "wrong": bool(candidates) and is_wrong(candidates[0], poses),
                      "all_named": all(named)})
     return rows
@@ -361,16 +373,20 @@ def verdicts(rows):
 def own_table(title, target, judged):
     lines = ["## %s\n" % title, "Target: %s.\n" % target,
              "| scans in map | starts | certain and right | certain and wrong | best candidate right "
-             "| a candidate right | CPU median [ms] | verdicts |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- |"]
+             "| a candidate right | in the map | of these: certain and right | best candidate right "
+             "| CPU median [ms] | verdicts |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     table = []
     for s, rows in judged:
         certain = [row for row in rows if is_certain(row)]
+        inside = [row for row in rows if row["in_map"]]
+        is_certain_and_right = lambda r: is_certain(r) and r["right"] == 0
         table.append((sum(row["right"] == 0 for row in certain) / max(1, len(rows)),
-                      "| %s | %d | %s | %d | %s | %s | %.0f | %s |" % (
-                          s.name, len(rows), fraction(rows, lambda r: is_certain(r) and r["right"] == 0),
+                      "| %s | %d | %s | %d | %s | %s | %d | %s | %s | %.0f | %s |" % (
+                          s.name, len(rows), fraction(rows, is_certain_and_right),
                           sum(row["wrong"] for row in certain), fraction(rows, lambda r: r["right"] == 0),
-                          fraction(rows, lambda r: r["right"] is not None),
+                          fraction(rows, lambda r: r["right"] is not None), len(inside),
+                          fraction(inside, is_certain_and_right), fraction(inside, lambda r: r["right"] == 0),
                           median([r["result"]["cpu_milliseconds"] for r in rows]), verdicts(rows))))
     return lines + [line for _, line in sorted(table)] + [""]
 
@@ -505,8 +521,9 @@ def report(arguments, judged, measurement):
              "Written by\n", "```sh", "scripts/measure_scan_localization.py --starts %d" % arguments.starts,
              "```\n", "at commit %s on %s, one thread. CPU times are those of one scan after loading the map; "
              "other programs ran beside it. Right is a pose within 0.5 m and 10 degrees of the truth, wrong one "
-             "beyond 1 m or 15 degrees. Every start counts, also where the map never was.\n" % (
-                 measuring.commit_name(), measuring.processor())]
+             "beyond 1 m or 15 degrees. Every start counts, also where the map never was; in the map are those within "
+             "%g m of a place from which the map was made.\n" % (
+                 measuring.commit_name(), measuring.processor(), IN_MAP_METERS)]
     for title, target, sets in (
             ("One scan, as recorded", "50 % certain and right, none wrong, best candidate 85 %, 50 ms", FULL),
             ("One scan of 180 degrees and 8 m", "20 % certain and right, none wrong, best candidate 60 %, "

@@ -254,6 +254,7 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("min_pair_score", options.min_pair_score);
   visit("min_proposing_score", options.min_proposing_score);
   visit("max_num_rounds", options.max_num_rounds);
+  visit("max_proposal_distance", options.max_proposal_distance);
   visit("weights", options.weights);
   visit("max_gain", options.max_gain);
 }
@@ -268,6 +269,14 @@ inline void VisitOptions(OptionVisitor& visit, RivalMatchOptions& options) {
         options.max_rotation_drift_per_sqrt_meter);
 }
 
+inline void VisitOptions(OptionVisitor& visit, MatchSupportOptions& options) {
+  visit("min_unsupported_score", options.min_unsupported_score);
+  visit("min_supported_score", options.min_supported_score);
+  visit("max_index_distance", options.max_index_distance);
+  visit("max_distance_meters", options.max_distance_meters);
+  visit("max_rotation", options.max_rotation);
+}
+
 inline void VisitOptions(OptionVisitor& visit, RecognitionOptions& options) {
   visit("match", options.match);
   visit("min_index_gap", options.min_index_gap);
@@ -277,6 +286,7 @@ inline void VisitOptions(OptionVisitor& visit, RecognitionOptions& options) {
   visit("links", options.links);
   visit("neighbourhood", options.neighbourhood);
   visit("rivals", options.rivals);
+  visit("support", options.support);
 }
 
 inline void VisitOptions(OptionVisitor& visit, ClosingOptions& options) {

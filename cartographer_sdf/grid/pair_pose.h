@@ -4,10 +4,14 @@
 #ifndef CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_
 #define CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_
 
+#include <utility>
+
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/submap_id.h"
 
 namespace cartographer_sdf {
+
+using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
 
 // The pose of a query submap in the frame of a reference submap, and how
 // certain it is.

@@ -27,13 +27,13 @@ void AddCounters(metrics::Family<metrics::Counter>* const family,
 }
 
 void RegisterOutcomes(metrics::FamilyFactory* const family_factory) {
-  AddCounters(
-      family_factory->NewCounterFamily("cartographer_sdf_matches",
-                                       "Verified poses, by verdict"),
-      "verdict", &VerdictName,
-      {Verdict::kAccepted, Verdict::kTooLittleOverlap, Verdict::kContradicted,
-       Verdict::kUnlikely, Verdict::kDegenerate, Verdict::kAmbiguous},
-      &TheMetrics().matches);
+  AddCounters(family_factory->NewCounterFamily("cartographer_sdf_matches",
+                                               "Verified poses, by verdict"),
+              "verdict", &VerdictName,
+              {Verdict::kAccepted, Verdict::kTooLittleOverlap,
+               Verdict::kContradicted, Verdict::kUnlikely, Verdict::kUncertain,
+               Verdict::kDegenerate, Verdict::kAmbiguous},
+              &TheMetrics().matches);
   AddCounters(family_factory->NewCounterFamily("cartographer_sdf_closures",
                                                "Accepted closures, by status"),
               "status", &ClosureStatusName,

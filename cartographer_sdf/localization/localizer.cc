@@ -132,18 +132,22 @@ class Localizer {
     }
   }
 
-  [[nodiscard]] bool Votes(const Match& match) const {
+  // Accepted if it needed no support: a placement has its own evidence.
+  [[nodiscard]] static bool IsLikely(const Match& match) {
     return match.verdict == Verdict::kAccepted ||
+           match.verdict == Verdict::kUncertain;
+  }
+
+  [[nodiscard]] bool Votes(const Match& match) const {
+    return IsLikely(match) ||
            (options_.count_likely_matches &&
             match.verdict == Verdict::kUnlikely && match.pair.score > 0.);
   }
 
   [[nodiscard]] bool HasAcceptedVote(const Placement& placement) const {
-    return std::any_of(placement.votes.begin(), placement.votes.end(),
-                       [this](const size_t vote) {
-                         return result_.matches[vote].verdict ==
-                                Verdict::kAccepted;
-                       });
+    return std::any_of(
+        placement.votes.begin(), placement.votes.end(),
+        [this](const size_t vote) { return IsLikely(result_.matches[vote]); });
   }
 
   void Vote() {

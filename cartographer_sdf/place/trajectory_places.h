@@ -26,6 +26,13 @@ struct TrajectoryPlaces {
   const std::map<SubmapId, OdometryPose>* odometry;
 };
 
+// Returns the pose of `b` in `a`, both of one trajectory, by local SLAM.
+[[nodiscard]] inline Rigid2 RelativePose(const TrajectoryPlaces& map,
+                                         const SubmapId& a, const SubmapId& b) {
+  return map.odometry->at(a).T_local_submap.Inverse() *
+         map.odometry->at(b).T_local_submap;
+}
+
 // Returns whether two submaps share scans: those of one trajectory do if their
 // indices differ by less than `min_index_gap`, and local SLAM has already
 // related them.

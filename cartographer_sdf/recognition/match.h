@@ -76,6 +76,11 @@ struct Match {
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> inliers;
   // Absent if the neighbourhood was not verified.
   std::optional<NeighbourhoodEvidence> neighbourhood;
+  // Another match that excludes this one is about as likely (rival_matches.h).
+  bool has_rival = false;
+  // Matches that support it (match_support.h). Absent if they were not looked
+  // for.
+  std::optional<int> num_supporting;
 };
 
 // Finds the poses in which a place resembles itself, by matching it with

@@ -34,32 +34,11 @@ constexpr std::array<NeighbourhoodTerm, kNumNeighbourhoodTerms> kTerms = {
      {"log_contradiction", &NeighbourhoodWeights::log_contradiction},
      {"log_confirmation", &NeighbourhoodWeights::log_confirmation}}};
 
-// Returns the submap itself and its existing neighbours, without those that a
-// broken link separates from it.
 std::vector<SubmapId> Neighbours(const NeighbourhoodOptions& options,
                                  const TrajectoryPlaces& map,
                                  const TrajectoryLinks* const links,
                                  const SubmapId& id) {
-  std::vector<SubmapId> neighbours;
-  for (int step = -options.num_steps; step <= options.num_steps; ++step) {
-    // Files may contain any index.
-    const int64_t index =
-        static_cast<int64_t>(id.index) + step * options.index_step;
-    if (index < 0 || index > std::numeric_limits<int>::max()) continue;
-    const SubmapId neighbour{id.trajectory, static_cast<int>(index)};
-    if (map.places->count(neighbour) == 0 ||
-        (links != nullptr && links->IsBrokenBetween(id, neighbour))) {
-      continue;
-    }
-    neighbours.push_back(neighbour);
-  }
-  return neighbours;
-}
-
-Rigid2 RelativePose(const TrajectoryPlaces& map, const SubmapId& a,
-                    const SubmapId& b) {
-  return map.odometry->at(a).T_local_submap.Inverse() *
-         map.odometry->at(b).T_local_submap;
+  return SubmapsAround(map, links, id, options.num_steps, options.index_step);
 }
 
 // Returns the match of a pair by itself.
@@ -207,6 +186,25 @@ class NeighbourhoodMeasurer {
 
 }  // namespace
 
+std::vector<SubmapId> SubmapsAround(const TrajectoryPlaces& map,
+                                    const TrajectoryLinks* const links,
+                                    const SubmapId& id, const int num_steps,
+                                    const int index_step) {
+  std::vector<SubmapId> around;
+  for (int step = -num_steps; step <= num_steps; ++step) {
+    // Files may contain any index.
+    const int64_t index = static_cast<int64_t>(id.index) + step * index_step;
+    if (index < 0 || index > std::numeric_limits<int>::max()) continue;
+    const SubmapId other{id.trajectory, static_cast<int>(index)};
+    if (map.places->count(other) == 0 ||
+        (links != nullptr && links->IsBrokenBetween(id, other))) {
+      continue;
+    }
+    around.push_back(other);
+  }
+  return around;
+}
+
 std::string Validate(const NeighbourhoodWeights& weights) {
   for (const NeighbourhoodTerm& term : kTerms) {
     if (!std::isfinite(weights.*term.weight)) {
@@ -222,6 +220,10 @@ std::string Validate(const NeighbourhoodOptions& options) {
       options.index_step < 1 || options.index_step > 100) {
     return "num_steps must lie between 0 and 10 and index_step between 1 and "
            "100";
+  }
+  if (options.max_proposal_distance < 0 ||
+      options.max_proposal_distance > 100) {
+    return "max_proposal_distance must lie between 0 and 100";
   }
   if (options.num_points < 1) return "num_points must be positive";
   if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {

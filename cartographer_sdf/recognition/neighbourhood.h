@@ -76,12 +76,24 @@ struct NeighbourhoodOptions {
   // What is proposed and found likely proposes in its turn, so often. 1: only
   // matches propose; 0: none do.
   int max_num_rounds = 4;
+  // An accepted match also proposes poses to the unmatched pairs of all submaps
+  // up to so many indices from its own. 0: to none.
+  int max_proposal_distance = 4;
   NeighbourhoodWeights weights;
   // The neighbourhood raises the score of a pair by at most this, log-odds: it
   // cannot make up for walls that disagree.
   double max_gain = 6.;
 };
 [[nodiscard]] std::string Validate(const NeighbourhoodOptions& options);
+
+// Returns the submaps of the trajectory of `id` up to `num_steps` steps of
+// `index_step` indices away, in either direction, and itself; without those
+// that a broken link separates from it. `links` may be null.
+[[nodiscard]] std::vector<SubmapId> SubmapsAround(const TrajectoryPlaces& map,
+                                                  const TrajectoryLinks* links,
+                                                  const SubmapId& id,
+                                                  int num_steps,
+                                                  int index_step);
 
 // Returns the logarithm of the ratio of contradicting wall over that of the
 // prior; zero if nothing was observed, negative if neighbours agree.
@@ -113,7 +125,7 @@ struct Neighbourhood {
 
 // Pairs that were matched by themselves, with the scores of each pair alone, by
 // (reference, query).
-using OwnMatches = std::map<std::pair<SubmapId, SubmapId>, PairPose>;
+using OwnMatches = std::map<IdPair, PairPose>;
 
 // Where neighbours are looked for: between two maps, or within one. Nothing is
 // owned.

@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
-
-using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
 
 // Proposals of one pair that are nearer than this count as one.
 constexpr PoseTolerance kSameProposal{0.5, 0.15};
@@ -94,6 +93,37 @@ class NeighbourhoodVerifier {
     return result;
   }
 
+  // Where an accepted match puts the unmatched pairs of submaps around its own;
+  // nothing if it is too unlikely.
+  void ProposeAround(const Match& match, const std::map<IdPair, Match>& matches,
+                     std::vector<PairPose>* const proposals) const {
+    const PairPose& pair = match.pair;
+    if (match.verdict != Verdict::kAccepted ||
+        pair.score < options_.min_proposing_score) {
+      return;
+    }
+    const int distance = options_.max_proposal_distance;
+    for (const SubmapId& i :
+         SubmapsAround(maps_.references, maps_.reference_links, pair.reference,
+                       distance, 1)) {
+      const Rigid2 T_i_query =
+          RelativePose(maps_.references, i, pair.reference) *
+          pair.T_reference_query;
+      for (const SubmapId& j : SubmapsAround(maps_.queries, maps_.query_links,
+                                             pair.query, distance, 1)) {
+        if (maps_.min_index_gap && ShareScans(i, j, *maps_.min_index_gap)) {
+          continue;
+        }
+        const PairPose proposal = InOrder(
+            {i, j, T_i_query * RelativePose(maps_.queries, pair.query, j),
+             pair.score});
+        if (matches.count(IdsOf(proposal)) == 0 && Overlap(proposal)) {
+          proposals->push_back(proposal);
+        }
+      }
+    }
+  }
+
   // Returns the pairs without a match that have proposals, by their ids.
   [[nodiscard]] std::vector<Task> CollectUnmatched(
       const std::map<IdPair, Match>& matches,
@@ -156,13 +186,24 @@ class NeighbourhoodVerifier {
     if (match.pair.score < options_.min_proposing_score) return {};
     for (PairPose& proposal : neighbours) {
       proposal.score = match.pair.score;
-      // Within one map, the lower id is the reference.
-      if (maps_.min_index_gap && proposal.query < proposal.reference) {
-        std::swap(proposal.reference, proposal.query);
-        proposal.T_reference_query = proposal.T_reference_query.Inverse();
-      }
+      proposal = InOrder(proposal);
     }
     return neighbours;
+  }
+
+  // Within one map, the lower id is the reference.
+  [[nodiscard]] PairPose InOrder(PairPose pair) const {
+    if (maps_.min_index_gap && pair.query < pair.reference) {
+      std::swap(pair.reference, pair.query);
+      pair.T_reference_query = pair.T_reference_query.Inverse();
+    }
+    return pair;
+  }
+
+  [[nodiscard]] bool Overlap(const PairPose& pair) const {
+    return OverlapArea(maps_.references.places->at(pair.reference).surface,
+                       maps_.queries.places->at(pair.query).surface,
+                       pair.T_reference_query) >= options_.min_overlap_area;
   }
 
   [[nodiscard]] Neighbourhood Measure(const PairPose& pair) const {
@@ -266,6 +307,27 @@ std::vector<PairPose> DecideAll(const NeighbourhoodVerifier& verifier,
   return proposals;
 }
 
+// Accepted matches propose poses to the unmatched pairs around them, until they
+// find no more.
+void SpreadAccepted(const NeighbourhoodVerifier& verifier,
+                    const Executor& executor,
+                    std::map<IdPair, Match>* const matches) {
+  std::set<IdPair> have_proposed;
+  for (;;) {
+    std::vector<PairPose> proposals;
+    for (const auto& [ids, match] : *matches) {
+      if (have_proposed.insert(ids).second) {
+        verifier.ProposeAround(match, *matches, &proposals);
+      }
+    }
+    const std::vector<Task> tasks =
+        verifier.CollectUnmatched(*matches, proposals);
+    if (tasks.empty()) return;
+    TaskProgress no_progress({}, tasks.size());
+    DecideAll(verifier, tasks, executor, &no_progress, matches);
+  }
+}
+
 }  // namespace
 
 std::vector<Match> VerifyNeighbourhoods(const NeighbourhoodOptions& options,
@@ -300,6 +362,7 @@ std::vector<Match> VerifyNeighbourhoods(const NeighbourhoodOptions& options,
     done = 0.5 * (1. + done);
     proposals = DecideAll(verifier, tasks, executor, &progress, &by_ids);
   }
+  SpreadAccepted(verifier, executor, &by_ids);
   std::vector<Match> result;
   for (auto& [ids, match] : by_ids) result.push_back(std::move(match));
   return result;

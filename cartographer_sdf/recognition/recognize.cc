@@ -16,7 +16,6 @@
 namespace cartographer_sdf {
 namespace {
 
-using IdPair = std::pair<SubmapId, SubmapId>;  // reference, query
 // Pairs to match, with poses that the index proposes (reference <- query).
 using ProposedPairs = std::map<IdPair, std::vector<Rigid2>>;
 
@@ -172,6 +171,7 @@ std::vector<Match> VerifyTogether(const RecognitionOptions& options,
                                  std::move(matches), executor, on_progress);
   RefuseRivalMatches(options.rivals, options.match.verification.judgement, maps,
                      &matches);
+  JudgeBySupport(options.support, maps, &matches);
   return matches;
 }
 
@@ -201,7 +201,7 @@ std::string Validate(const RecognitionOptions& options) {
   for (const std::string& error :
        {Validate(options.match), Validate(options.retrieval),
         Validate(options.links), Validate(options.neighbourhood),
-        Validate(options.rivals)}) {
+        Validate(options.rivals), Validate(options.support)}) {
     if (!error.empty()) return error;
   }
   if (options.min_index_gap < 1) return "min_index_gap must be positive";

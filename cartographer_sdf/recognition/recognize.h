@@ -17,6 +17,7 @@
 #include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/match_support.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
 #include "cartographer_sdf/recognition/rival_matches.h"
 #include "cartographer_sdf/recognition/trajectory_links.h"
@@ -38,8 +39,9 @@ struct RecognitionOptions {
   bool verify_neighbourhoods = true;
   TrajectoryLinkOptions links;
   NeighbourhoodOptions neighbourhood;
-  // Applied together with the verification of neighbourhoods.
+  // Both are applied together with the verification of neighbourhoods.
   RivalMatchOptions rivals;
+  MatchSupportOptions support;
 };
 [[nodiscard]] std::string Validate(const RecognitionOptions& options);
 

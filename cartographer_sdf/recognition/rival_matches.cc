@@ -122,8 +122,9 @@ void RefuseRivalMatches(const RivalMatchOptions& options,
     Match& match = (*matches)[k];
     const double lead = match.pair.score - best_rivals[k];
     match.pair.score -= options.rival_weight * LogOfOnePlusOdds(best_rivals[k]);
+    match.has_rival = lead < options.min_lead;
     if (match.verdict == Verdict::kAccepted &&
-        (lead < options.min_lead || match.pair.score < judgement.min_score)) {
+        (match.has_rival || match.pair.score < judgement.min_score)) {
       match.verdict = Verdict::kAmbiguous;
     }
   }

@@ -40,10 +40,10 @@ struct RivalMatchOptions {
 };
 [[nodiscard]] std::string Validate(const RivalMatchOptions& options);
 
-// Lowers the scores of matches that others exclude, and sets their verdicts to
-// kAmbiguous if they were accepted and their leads or scores no longer suffice.
-// `maps.own_matches` is not used. Independent of the order of the matches. For
-// each submap, quadratic in the number of its matches.
+// Lowers the scores of matches that others exclude, sets Match::has_rival, and
+// sets verdicts to kAmbiguous if they were accepted and their leads or scores
+// no longer suffice. `maps.own_matches` is not used. Independent of the order
+// of the matches. For each submap, quadratic in the number of its matches.
 void RefuseRivalMatches(const RivalMatchOptions& options,
                         const JudgementOptions& judgement,
                         const NeighbourhoodMaps& maps,

@@ -84,20 +84,30 @@ int RankOf(const Tone tone) {
 
 }  // namespace
 
+LeastScore LeastScoreOf(const RecognitionOptions& options) {
+  if (!options.verify_neighbourhoods) {
+    return {options.match.verification.judgement.min_score,
+            absl::StrCat(kJudgementPath, ".min_score")};
+  }
+  return {options.support.min_supported_score,
+          absl::StrCat(kRecognitionPath, ".support.min_supported_score")};
+}
+
 // Long: a list of all.
 std::vector<Measure> MatchMeasures(const JudgementOptions& judgement,
-                                   const std::string& path) {
+                                   const std::string& path,
+                                   const LeastScore& least_score) {
   const auto option = [&path](const char* const name) {
     return absl::StrCat(path, ".", name);
   };
   return {
       {"probability", "probability", "%", 1,
        "Of being right, as the score says.", true, Bound::kAtLeast,
-       kPercent * ProbabilityOf(judgement.min_score), option("min_score")},
+       kPercent * ProbabilityOf(least_score.score), least_score.option},
       {"score", "score", "", 2,
        "Log-odds of being right, from the walls of both submaps and of those "
        "around them.",
-       false, Bound::kAtLeast, judgement.min_score, option("min_score")},
+       false, Bound::kAtLeast, least_score.score, least_score.option},
       {"margin", "lead over other poses", "", 2,
        "By how much the score exceeds that of the best other pose of the "
        "pair.",
@@ -129,7 +139,10 @@ std::vector<Measure> MatchMeasures(const JudgementOptions& judgement,
        "them, counted by the ground that they show."},
       {"refuting", "refuting neighbours", "", 1,
        "Pairs of neighbouring submaps that were found elsewhere, counted by "
-       "their probability."}};
+       "their probability."},
+      {"supporting", "supporting matches", "", 0,
+       "Certain matches of submaps around these that put them where this one "
+       "does. A score that is not certain needs one."}};
 }
 
 std::vector<std::optional<double>> MatchValues(const Match& match) {
@@ -151,7 +164,8 @@ std::vector<std::optional<double>> MatchValues(const Match& match) {
           evidence.MinScatterEigenvalue(),
           static_cast<double>(match.inliers.size()),
           of_neighbours(&NeighbourhoodEvidence::num_confirming),
-          of_neighbours(&NeighbourhoodEvidence::num_refuting)};
+          of_neighbours(&NeighbourhoodEvidence::num_refuting),
+          match.num_supporting};
 }
 
 std::vector<RowStatus> RefusalStatuses(const std::string& path) {
@@ -161,19 +175,25 @@ std::vector<RowStatus> RefusalStatuses(const std::string& path) {
     return RowStatus{VerdictName(verdict), label, Tone::kNeutral, meaning,
                      absl::StrCat(path, ".", option)};
   };
-  return {status(Verdict::kContradicted, "refused: contradicted",
-                 "Walls of one stand in free space of the other.",
-                 "max_contradiction_ratio"),
-          status(Verdict::kAmbiguous, "refused: ambiguous",
-                 "Another pose of the two submaps is as good.", "min_margin"),
-          status(Verdict::kUnlikely, "refused: unlikely",
-                 "Too little agrees to be sure.", "min_score"),
-          status(Verdict::kDegenerate, "refused: could slide",
-                 "The walls face one way: the pose could slide along them.",
-                 "min_scatter_eigenvalue"),
-          status(Verdict::kTooLittleOverlap, "refused: too little overlap",
-                 "Both submaps have observed too little in common.",
-                 "min_overlap_area")};
+  return {
+      status(Verdict::kContradicted, "refused: contradicted",
+             "Walls of one stand in free space of the other.",
+             "match.verification.judgement.max_contradiction_ratio"),
+      status(Verdict::kAmbiguous, "refused: ambiguous",
+             "Another pose of the two submaps is as good.",
+             "match.verification.judgement.min_margin"),
+      status(Verdict::kUncertain, "refused: uncertain",
+             "Likely, but neither certain by itself nor supported by a "
+             "match that is.",
+             "support.min_unsupported_score"),
+      status(Verdict::kUnlikely, "refused: unlikely",
+             "Too little agrees to be sure.", "support.min_supported_score"),
+      status(Verdict::kDegenerate, "refused: could slide",
+             "The walls face one way: the pose could slide along them.",
+             "match.verification.judgement.min_scatter_eigenvalue"),
+      status(Verdict::kTooLittleOverlap, "refused: too little overlap",
+             "Both submaps have observed too little in common.",
+             "match.verification.judgement.min_overlap_area")};
 }
 
 std::vector<RowStatus> ClosureStatuses(const std::string& path) {
@@ -212,12 +232,13 @@ InspectedTable MakeClosureTable(const LoopClosingOptions& options,
                                 const std::vector<Match>& refused) {
   InspectedTable table{
       "closures", "Closures", "", {}, ClosureStatuses(kClosingPath)};
-  table.measures = MatchMeasures(
-      options.recognition.match.verification.judgement, kJudgementPath);
+  table.measures =
+      MatchMeasures(options.recognition.match.verification.judgement,
+                    kJudgementPath, LeastScoreOf(options.recognition));
   for (Measure& measure : ErrorMeasures(options.closing.outlier_rejection)) {
     table.measures.push_back(std::move(measure));
   }
-  for (RowStatus& status : RefusalStatuses(kJudgementPath)) {
+  for (RowStatus& status : RefusalStatuses(kRecognitionPath)) {
     table.statuses.push_back(std::move(status));
   }
   // The least certain closures first, and the most likely refused matches.

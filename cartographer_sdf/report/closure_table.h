@@ -14,6 +14,7 @@
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/closing/closure.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/recognize.h"
 #include "cartographer_sdf/report/inspection.h"
 #include "cartographer_sdf/verification/judgement.h"
 
@@ -23,19 +24,29 @@ namespace cartographer_sdf {
 constexpr size_t kMaxTableRows = 2000;
 
 // Where the options are in the table of the configuration files.
+constexpr char kRecognitionPath[] = "loop_closing.recognition";
 constexpr char kJudgementPath[] =
     "loop_closing.recognition.match.verification.judgement";
 constexpr char kClosingPath[] = "loop_closing.closing";
 
+// The least score of a match, and the option that holds it.
+struct LeastScore {
+  double score;
+  std::string option;
+};
+// Of a match that others support, if support counts.
+[[nodiscard]] LeastScore LeastScoreOf(const RecognitionOptions& options);
+
 // `path` is that of the options of judgement.
 [[nodiscard]] std::vector<Measure> MatchMeasures(
-    const JudgementOptions& judgement, const std::string& path);
+    const JudgementOptions& judgement, const std::string& path,
+    const LeastScore& least_score);
 [[nodiscard]] std::vector<std::optional<double>> MatchValues(
     const Match& match);
 
 // The statuses of matches that verification refused, by the names of their
 // verdicts, and of closures, by theirs. `path` is that of the options of
-// judgement, or of closing.
+// recognition, or of closing.
 [[nodiscard]] std::vector<RowStatus> RefusalStatuses(const std::string& path);
 [[nodiscard]] std::vector<RowStatus> ClosureStatuses(const std::string& path);
 

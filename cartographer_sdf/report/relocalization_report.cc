@@ -154,7 +154,7 @@ InspectedTable VoteTable(const LoopClosingOptions& stages,
   InspectedTable table{
       "matches", "Matches", "",
       MatchMeasures(stages.recognition.match.verification.judgement,
-                    kJudgementPath),
+                    kJudgementPath, LeastScoreOf(stages.recognition)),
       VoteStatuses()};
   table.rows = CrossedRows(map, query, result, table.measures.size());
   table.measures.push_back(

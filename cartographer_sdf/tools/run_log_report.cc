@@ -276,10 +276,13 @@ std::vector<RowStatus> LiveStatuses() {
 
 InspectedTable LiveClosureTable(const LiveOptions& options,
                                 const std::vector<ClosureRecord>& records) {
-  InspectedTable table{"closures", "Closures", "",
-                       MatchMeasures(options.match.verification.judgement,
-                                     "match.verification.judgement"),
-                       LiveStatuses()};
+  const JudgementOptions& judgement = options.match.verification.judgement;
+  const std::string path = "match.verification.judgement";
+  InspectedTable table{
+      "closures", "Closures", "",
+      MatchMeasures(judgement, path,
+                    {judgement.min_score, path + ".min_score"}),
+      LiveStatuses()};
   table.measures.push_back(
       {"constraints", "constraints", "", 0,
        "Scans that were registered between the two submaps; each is a "

@@ -35,6 +35,8 @@ const char* VerdictName(const Verdict verdict) {
       return "contradicted";
     case Verdict::kUnlikely:
       return "unlikely";
+    case Verdict::kUncertain:
+      return "uncertain";
     case Verdict::kDegenerate:
       return "degenerate";
     case Verdict::kAmbiguous:

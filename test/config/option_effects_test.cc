@@ -17,9 +17,11 @@
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/matching/place_index.h"
+#include "cartographer_sdf/recognition/neighbourhood_verification.h"
 #include "cartographer_sdf/recognition/recognize.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
+#include "test/testing/corridor_map.h"
 #include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::option_effects_test {
@@ -167,6 +169,54 @@ std::string RefusedRivals(const RivalMatchOptions& options) {
   return text.str();
 }
 
+// What becomes of matches between two drives along a corridor: of certain ones
+// alone, and of likely ones at various distances from one.
+std::string JudgedBySupport(const MatchSupportOptions& options) {
+  const testing::CorridorMap corridor;
+  std::ostringstream text;
+  const auto judge = [&](std::vector<Match> matches) {
+    JudgeBySupport(options, corridor.Between(), &matches);
+    text << VerdictName(matches.back().verdict) << " ";
+  };
+  for (const double score : {5., 6.5, 7.5, 9.}) {
+    judge({testing::AcceptedMatch(0, 0, Rigid2(), score)});
+  }
+  const auto judge_beside = [&](const int index, const Rigid2& pose,
+                                const double score) {
+    Match likely = testing::AcceptedMatch(index, index, pose, score);
+    likely.verdict = Verdict::kUnlikely;
+    judge({testing::AcceptedMatch(0, 0, Rigid2(), 20.), likely});
+  };
+  for (int index = 1; index < 10; ++index) judge_beside(index, Rigid2(), 3.);
+  for (const double score : {0.5, 0.8, 1.2, 1.8}) {
+    judge_beside(1, Rigid2(), score);
+  }
+  for (const double distance : {0.2, 0.45, 0.55, 0.9}) {
+    judge_beside(1, Rigid2(distance, 0., 0.), 3.);
+  }
+  for (const double rotation : {0.05, 0.09, 0.11, 0.18}) {
+    judge_beside(1, Rigid2(0., 0., rotation), 3.);
+  }
+  return text.str();
+}
+
+// How many matches there are where only accepted ones propose to others.
+std::string SpreadMatches(const RecognitionOptions& options) {
+  const testing::TwoVisits visits;
+  const auto& places = *visits.Places().places;
+  const std::optional<Match> west =
+      MatchPlaces(options.match, places.at(testing::TwoVisits::kWestFirst),
+                  places.at(testing::TwoVisits::kWestAgain));
+  CHECK(west.has_value());
+  NeighbourhoodOptions neighbourhood = options.neighbourhood;
+  neighbourhood.max_num_rounds = 0;
+  return std::to_string(
+      VerifyNeighbourhoods(neighbourhood, options.match,
+                           {visits.Places(), visits.Places(), 3}, {*west},
+                           MakeExecutor(1))
+          .size());
+}
+
 TEST(OptionEffectsTest, OfPlaces) {
   const Drive drive;
   const std::vector<testing::Scenario<PlaceOptions>> scenarios = {
@@ -236,6 +286,10 @@ TEST(OptionEffectsTest, OfRecognition) {
        [](const RecognitionOptions& options) {
          return RefusedRivals(options.rivals);
        }},
+      {"support.",
+       [](const RecognitionOptions& options) {
+         return JudgedBySupport(options.support);
+       }},
       {"neighbourhood.",
        [&](const RecognitionOptions& options) {
          RecognitionOptions generous = options;
@@ -244,6 +298,7 @@ TEST(OptionEffectsTest, OfRecognition) {
                 drive.Recognize(generous, places) +
                 drive.Recognize(generous, featureless);
        }},
+      {"neighbourhood.max_proposal_distance", &SpreadMatches},
       {"retrieval.",
        [&](const RecognitionOptions& options) {
          RetrievalOptions retrieval = options.retrieval;

@@ -165,6 +165,23 @@ TEST(VerifyNeighbourhoodsTest, UnlikelyMatchesProposeNothing) {
   EXPECT_EQ(judged[0].pair.query, TwoVisits::kWestAgain);
 }
 
+TEST(VerifyNeighbourhoodsTest, AcceptedMatchesProposeToAllPairsAroundThem) {
+  const TwoVisits visits;
+  NeighbourhoodOptions options;
+  options.max_num_rounds = 0;
+  const auto num_matches = [&] {
+    return VerifyNeighbourhoods(options, MatchOptions(),
+                                {visits.Places(), visits.Places(), 3},
+                                WestMatch(visits), &Forwards)
+        .size();
+  };
+  // The east rooms are two indices on.
+  options.max_proposal_distance = 2;
+  EXPECT_EQ(num_matches(), 2u);
+  options.max_proposal_distance = 1;
+  EXPECT_EQ(num_matches(), 1u);
+}
+
 // Between two maps, the map stays the reference whatever the ids.
 TEST(VerifyNeighbourhoodsTest, ProposalsBetweenMapsKeepTheirSides) {
   const TwoVisits visits;

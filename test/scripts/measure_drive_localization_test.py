@@ -28,6 +28,12 @@ class FakeMeasurement:
     def right_poses_at(self, _, seconds):
         return [(1., 2., 0.)] if seconds <= 108. else None
 
+    def first_scan_at(self, _, seconds):
+        return seconds
+
+    def was_in_map(self, _, seconds):
+        return seconds < 104.
+
 
 def step(seconds, located, x, milliseconds=10.):
     pose = {"x": x, "y": 2., "yaw": 0.}
@@ -47,8 +53,8 @@ class MeasureTest(unittest.TestCase):
 
     def test_the_last_step_in_time_counts(self):
         judged = self.judge(step(0., False, 1.2), step(4., False, 5.), step(7., True, 1.1, 30.))
-        self.assertEqual(judged[5.], (False, False, False, 10., 2.))
-        self.assertEqual(judged[10.], (True, False, True, 30., 3.5))
+        self.assertEqual(judged[5.], (False, False, False, 10., 2., False))
+        self.assertEqual(judged[10.], (True, False, True, 30., 3.5, False))
 
     def test_what_was_ever_wrong_stays_so(self):
         judged = self.judge(step(0., True, 9.), step(4., False, 1.), step(7., True, 1.1))
@@ -62,9 +68,18 @@ class MeasureTest(unittest.TestCase):
     def test_tables(self):
         results = [drive(step(0., True, 1.)), drive(step(0., False, 5.))]
         own = measure.own_table(FakeMeasurement(), [(scans.FULL[0], results)], 5.)
-        self.assertIn("| 2 | 50 % | 0 | 50 % | 0.0 | 10 |", own[-2])
+        self.assertIn("| 2 | 50 % | 0 | 50 % | 2 | 50 % | 50 % | 0.0 | 10 |", own[-2])
         certain = measure.certain_table([(scans.FULL[0], results)], "drives")
         self.assertIn("| 2 | 1 | 0.900 | 10 |", certain[-2])
+
+    def test_a_history_counts_from_the_first_scan(self):
+        drives = measure.Drives(argparse.Namespace(program="", data="", work="", starts=1))
+        drives.query = lambda name: (name, None)
+        drives.times_of[scans.FULL[0].query] = [(0., 3), (.7, 4), (1.5, 5)]
+        self.assertEqual(drives.first_scan_at(scans.FULL[0], 0.), 0.)
+        self.assertEqual(drives.first_scan_at(scans.FULL[0], .2), .7)
+        self.assertEqual(drives.first_scan_at(scans.FULL[0], 1.5), 1.5)
+        self.assertEqual(drives.node_at(scans.FULL[0], .7), 4)
 
     def test_a_small_run(self):
         """A drive through a symmetric building that the script itself draws, in that building."""

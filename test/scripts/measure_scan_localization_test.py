@@ -60,12 +60,12 @@ class MeasureTest(unittest.TestCase):
 
     def test_tables(self):
         rows = [
-            {"result": result("localized", (.995, (0., 0., 0.))), "right": 0, "wrong": False},
-            {"result": result("localized", (.992, (5., 0., 0.))), "right": None, "wrong": True},
-            {"result": result("nothing_alike", (.1, (5., 0., 0.))), "right": None, "wrong": True},
-            {"result": result("uncertain", (.6, (0., 0., 0.))), "right": 0, "wrong": False}]
+            {"result": result("localized", (.995, (0., 0., 0.))), "right": 0, "wrong": False, "in_map": True},
+            {"result": result("localized", (.992, (5., 0., 0.))), "right": None, "wrong": True, "in_map": False},
+            {"result": result("nothing_alike", (.1, (5., 0., 0.))), "right": None, "wrong": True, "in_map": False},
+            {"result": result("uncertain", (.6, (0., 0., 0.))), "right": 0, "wrong": False, "in_map": True}]
         own = measure.own_table("title", "target", [(measure.FULL[0], rows)])
-        self.assertIn("| 4 | 25 % | 1 | 50 % | 50 % | 10 |", own[-2])
+        self.assertIn("| 4 | 25 % | 1 | 50 % | 50 % | 2 | 50 % | 100 % | 10 |", own[-2])
         reliability = "\n".join(measure.reliability_table([(measure.FULL[0], rows)]))
         self.assertIn("| [0.99, 0.999) | 2 | 0.994 | 0.500 | 2 |", reliability)
         self.assertIn("| [0.5, 0.8) | 1 | 0.600 | 1.000 | 1 |", reliability)

@@ -72,7 +72,7 @@ class StageTest(unittest.TestCase):
 
     def test_every_option_has_a_default_and_a_comment(self):
         text = self.text("reference/options/sdf_global_constraints.md")
-        self.assertIn("`min_score` = `4.`\n: Least score.", text)
+        self.assertIn("`min_unsupported_score` = `7.`\n: Least score of a match that stands alone", text)
         self.assertIn("## localization.placement\n", text)
         self.assertIn("`query_interval_meters` = `0.5`", self.text("reference/options/sdf_live.md"))
 

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
+// SPDX-License-Identifier: Apache-2.0
+
+// Matches that support each other. A match that is certain by itself tells, by
+// local SLAM on either side, where the submaps around its own lie in each
+// other. A match of two of them that lies there and is only likely is right as
+// well, and supports others in its turn; one without support has to be certain
+// itself.
+//
+// One threshold for all could not do both. In noisy maps and outdoors, most
+// right matches are only likely, but near some that are certain. Between
+// different buildings, two bare corners or corridors may be likely, and nothing
+// around them is certain.
+
+#ifndef CARTOGRAPHER_SDF_RECOGNITION_MATCH_SUPPORT_H_
+#define CARTOGRAPHER_SDF_RECOGNITION_MATCH_SUPPORT_H_
+
+#include <string>
+#include <vector>
+
+#include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
+
+namespace cartographer_sdf {
+
+struct MatchSupportOptions {
+  // Least score of a match that stands alone; log-odds. Such a match is
+  // certain.
+  double min_unsupported_score = 7.;
+  // Least score of a match that others support; log-odds. Above
+  // JudgementOptions::min_score it supports in its turn.
+  double min_supported_score = 1.;
+  // The submaps of a match and of one that supports it are at most so many
+  // indices apart, on either side.
+  int max_index_distance = 4;
+  // A match supports another if the pose that it predicts for the query of the
+  // other is this near [m], [rad]. Local SLAM drifts less on so short a way.
+  double max_distance_meters = 0.5;
+  double max_rotation = 0.1;
+};
+[[nodiscard]] std::string Validate(const MatchSupportOptions& options);
+
+// Sets Match::num_supporting. Matches that were accepted, have no support and
+// are not certain become kUncertain; those that were kUnlikely, have support
+// and no rival become kAccepted. Nothing supports across a broken link
+// (trajectory_links.h). `maps.own_matches` is not used. Independent of the
+// order of the matches.
+void JudgeBySupport(const MatchSupportOptions& options,
+                    const NeighbourhoodMaps& maps, std::vector<Match>* matches);
+
+}  // namespace cartographer_sdf
+
+#endif  // CARTOGRAPHER_SDF_RECOGNITION_MATCH_SUPPORT_H_
