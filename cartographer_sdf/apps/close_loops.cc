@@ -39,9 +39,9 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   std::vector<Match> matches = RecognizeWithin(
       options.recognition, map->trajectory_places(), executor, &clock);
   result.num_matches = matches.size();
-  std::copy_if(
-      matches.begin(), matches.end(), std::back_inserter(result.refused),
-      [](const Match& match) { return match.verdict != Verdict::kAccepted; });
+  std::copy_if(matches.begin(), matches.end(),
+               std::back_inserter(result.refused),
+               [](const Match& match) { return !IsCandidate(match); });
   ClosingOptions closing = options.closing;
   closing.optimization = OptimizationInForce(closing, map->state.pose_graph);
   result.optimization = closing.optimization;

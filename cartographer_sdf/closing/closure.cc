@@ -27,10 +27,15 @@ const char* ClosureStatusName(const ClosureStatus status) {
   return kNames[static_cast<size_t>(status)];
 }
 
+bool IsCandidate(const Match& match) {
+  return match.verdict == Verdict::kAccepted ||
+         match.verdict == Verdict::kUncertain;
+}
+
 std::vector<Closure> MakeClosures(std::vector<Match> matches) {
   std::vector<Closure> closures;
   for (Match& match : matches) {
-    if (match.verdict != Verdict::kAccepted) continue;
+    if (!IsCandidate(match)) continue;
     closures.emplace_back().match = std::move(match);
   }
   return closures;

@@ -42,7 +42,11 @@ struct Closure {
   ConstraintError graph_error;
 };
 
-// Makes a closure of each accepted match, in the order of the matches.
+// Whether a match may become a constraint: accepted, or uncertain, which other
+// closures may support through odometry (consistency.h).
+[[nodiscard]] bool IsCandidate(const Match& match);
+
+// Makes a closure of each candidate, in the order of the matches.
 [[nodiscard]] std::vector<Closure> MakeClosures(std::vector<Match> matches);
 
 }  // namespace cartographer_sdf

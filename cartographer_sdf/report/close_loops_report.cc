@@ -88,8 +88,7 @@ void AddClosingNumbers(const LoopClosingResult& result,
                                result.num_places, " of them with walls")},
       {"Nodes", absl::StrCat(result.state.pose_graph.nodes.size())},
       {"Pairs with a pose", absl::StrCat(result.num_matches)},
-      {"Accepted by verification",
-       absl::StrCat(result.closed.closures.size())}};
+      {"Passed verification", absl::StrCat(result.closed.closures.size())}};
   for (const RowStatus& status : ClosureStatuses(kClosingPath)) {
     const auto count = std::count_if(
         result.closed.closures.begin(), result.closed.closures.end(),

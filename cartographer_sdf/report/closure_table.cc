@@ -102,8 +102,10 @@ std::vector<Measure> MatchMeasures(const JudgementOptions& judgement,
   };
   return {
       {"probability", "probability", "%", 1,
-       "Of being right, as the score says.", true, Bound::kAtLeast,
-       kPercent * ProbabilityOf(least_score.score), least_score.option},
+       "Of being right, as the score says; what supports a match counts beside "
+       "it.",
+       true, Bound::kAtLeast, kPercent * ProbabilityOf(least_score.score),
+       least_score.option},
       {"score", "score", "", 2,
        "Log-odds of being right, from the walls of both submaps and of those "
        "around them.",
@@ -182,10 +184,6 @@ std::vector<RowStatus> RefusalStatuses(const std::string& path) {
       status(Verdict::kAmbiguous, "refused: ambiguous",
              "Another pose of the two submaps is as good.",
              "match.verification.judgement.min_margin"),
-      status(Verdict::kUncertain, "refused: uncertain",
-             "Likely, but neither certain by itself nor supported by a "
-             "match that is.",
-             "support.min_unsupported_score"),
       status(Verdict::kUnlikely, "refused: unlikely",
              "Too little agrees to be sure.", "support.min_supported_score"),
       status(Verdict::kDegenerate, "refused: could slide",

@@ -55,9 +55,9 @@ void RecordClosing(const LoopClosingResult& result, RunRecord* const record) {
 
 void PrintSummary(const LoopClosingResult& result) {
   PrintRepair(result.state);
-  std::cout << absl::StrFormat(
-      "%d submaps, %d matches accepted by verification\n", result.num_places,
-      result.closed.closures.size());
+  std::cout << absl::StrFormat("%d submaps, %d matches passed verification\n",
+                               result.num_places,
+                               result.closed.closures.size());
   PrintStatuses("", result.closed.closures);
   if (!result.closed.torn_submaps.empty()) {
     std::cout << absl::StrFormat("%d submaps are torn inside:\n",
