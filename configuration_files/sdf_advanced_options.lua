@@ -50,6 +50,10 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- yield additional features. 1: only the highest peak.
         secondary_orientation_ratio = 1.,
       },
+      -- [MB] Distance fields of one map that stay in memory; others are made
+      -- again when they are needed, with the same results. Smaller: less
+      -- memory, slower on large maps.
+      max_field_megabytes = 512.,
     },
     -- Recognition of submaps that see the same place.
     recognition = {

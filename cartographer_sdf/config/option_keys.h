@@ -41,6 +41,7 @@ inline void VisitOptions(OptionVisitor& visit, PlaceOptions& options) {
   visit("field", options.field);
   visit("keypoint", options.keypoint);
   visit("descriptor", options.descriptor);
+  visit("max_field_megabytes", options.max_field_megabytes);
 }
 
 inline void VisitOptions(OptionVisitor& visit, CorrespondenceOptions& options) {

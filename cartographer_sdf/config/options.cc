@@ -14,8 +14,9 @@ absl::StatusOr<Options> LoadOptions(const std::vector<std::string>& directories,
   return LoadTable<Options>(directories, basename, kOptionsTable);
 }
 
-std::string FormatPlaceOptions(const PlaceOptions& place,
-                               const MatchOptions& match) {
+std::string FormatPlaceOptions(PlaceOptions place, const MatchOptions& match) {
+  // What no place depends on.
+  place.max_field_megabytes = PlaceOptions().max_field_megabytes;
   return FormatTable("place", place) + FormatTable("match", match);
 }
 

@@ -45,7 +45,7 @@ struct Options {
 
 // The options that places depend on, as text: the key of place files
 // (place_file.h).
-[[nodiscard]] std::string FormatPlaceOptions(const PlaceOptions& place,
+[[nodiscard]] std::string FormatPlaceOptions(PlaceOptions place,
                                              const MatchOptions& match);
 
 // As Lua that LoadOptions would read.

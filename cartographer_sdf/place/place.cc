@@ -16,6 +16,10 @@ std::string Validate(const PlaceOptions& options) {
         Validate(options.descriptor)}) {
     if (!error.empty()) return error;
   }
+  if (!(options.max_field_megabytes >= 0. &&
+        options.max_field_megabytes <= 1e6)) {
+    return "max_field_megabytes must lie between 0 and 1000000";
+  }
   return "";
 }
 

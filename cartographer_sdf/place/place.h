@@ -19,6 +19,9 @@ struct PlaceOptions {
   FieldOptions field;
   KeypointOptions keypoint;
   DescriptorOptions descriptor;
+  // Distance fields of one map that stay in memory [MB]; others are made again
+  // when they are needed (field_memory.h). No result depends on it.
+  double max_field_megabytes = 512.;
 };
 [[nodiscard]] std::string Validate(const PlaceOptions& options);
 

@@ -16,7 +16,7 @@ class SurfaceCellLookup {
  public:
   // The model must outlive it.
   SurfaceCellLookup(const SurfaceModel& model, const Rigid2& T_model_points)
-      : model_(model) {
+      : model_(model), cells_(model.cells.Pin()) {
     const Rigid2 T_grid_points =
         model.geometry.T_submap_grid.Inverse() * T_model_points;
     const double cells_per_meter = 1. / model.geometry.resolution;
@@ -24,7 +24,7 @@ class SurfaceCellLookup {
     translation_ = cells_per_meter * T_grid_points.translation();
   }
 
-  // Null outside of the model.
+  // Null outside of the model; valid as long as the lookup.
   [[nodiscard]] const SurfaceCell* Find(const Eigen::Vector2d& point) const {
     const Eigen::Vector2d cell = rotation_ * point + translation_;
     if (!(cell.x() >= 0. && cell.y() >= 0. &&
@@ -32,12 +32,13 @@ class SurfaceCellLookup {
           cell.y() < model_.geometry.size.y())) {
       return nullptr;
     }
-    return &model_.cells(static_cast<Eigen::Index>(cell.x()),
-                         static_cast<Eigen::Index>(cell.y()));
+    return &(*cells_)(static_cast<Eigen::Index>(cell.x()),
+                      static_cast<Eigen::Index>(cell.y()));
   }
 
  private:
   const SurfaceModel& model_;
+  const PinnedCells cells_;
   Eigen::Matrix2d rotation_;
   Eigen::Vector2d translation_;
 };

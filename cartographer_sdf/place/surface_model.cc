@@ -21,20 +21,6 @@ constexpr float kCertaintyRange = 0.25f;
 // About one observed point for each square of this side [m].
 constexpr double kObservedPointSpacing = 0.25;
 
-// To the nearest integer, halves away from zero; as std::lround, but of whole
-// columns at once. The number must fit an integer.
-inline int Round(const float number) {
-  const int towards_zero = static_cast<int>(number);
-  const float rest = number - static_cast<float>(towards_zero);
-  return towards_zero + (rest >= 0.5f ? 1 : 0) - (rest <= -0.5f ? 1 : 0);
-}
-
-inline int16_t ToMillimetres(const float meters) {
-  constexpr float kLimit = 32767.f;
-  return static_cast<int16_t>(
-      Round(std::clamp(1000.f * meters, -kLimit, kLimit)));
-}
-
 // Fisher-Yates with a fixed seed and our own draws, as std::shuffle differs
 // between libraries.
 template <typename T>
@@ -51,11 +37,12 @@ inline uint8_t FreeCertainty(const float probability, const float threshold) {
   const float certainty =
       std::clamp((kFreeOffset - probability) / kCertaintyRange, 0.f, 1.f);
   return static_cast<uint8_t>(
-      probability > threshold ? 0 : Round(255.f * certainty));
+      probability > threshold ? 0 : RoundHalfAway(255.f * certainty));
 }
 
 // Adds the walls as weighted points, and the certainty of the free cells.
 void AddCertainty(const FieldOptions& options, const OccupancyGrid& grid,
+                  SurfaceCellArray* const all_cells,
                   SurfaceModel* const model) {
   const CellGeometry& geometry = grid.geometry;
   const Eigen::Array2i margin = (model->geometry.size - geometry.size) / 2;
@@ -63,7 +50,7 @@ void AddCertainty(const FieldOptions& options, const OccupancyGrid& grid,
   for (int j = 0; j < geometry.size.y(); ++j) {
     const bool* const known = &grid.known(0, j);
     const float* const probability = &grid.probability(0, j);
-    SurfaceCell* const cells = &model->cells(margin.x(), j + margin.y());
+    SurfaceCell* const cells = &(*all_cells)(margin.x(), j + margin.y());
     for (int i = 0; i < geometry.size.x(); ++i) {
       if (!known[i]) continue;
       cells[i].free = FreeCertainty(probability[i], threshold);
@@ -92,14 +79,14 @@ std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
   SurfaceModel model;
   model.geometry = field.geometry;
   const CellGeometry& geometry = model.geometry;
-  model.cells.resize(geometry.size.x(), geometry.size.y());
+  SurfaceCellArray cells(geometry.size.x(), geometry.size.y());
   const float* const distance = field.distance.data();
   const bool* const observed = field.observed.data();
-  SurfaceCell* const cells = model.cells.data();
-  for (Eigen::Index k = 0; k < model.cells.size(); ++k) {
-    cells[k] = {ToMillimetres(distance[k]), 0, observed[k]};
+  for (Eigen::Index k = 0; k < cells.size(); ++k) {
+    cells.data()[k] = {DistanceInMillimetres(distance[k]), 0, observed[k]};
   }
-  AddCertainty(options, grid, &model);
+  AddCertainty(options, grid, &cells, &model);
+  model.cells = SurfaceCells(std::move(cells), geometry.resolution);
   const int stride =
       std::max(1, static_cast<int>(std::lround(kObservedPointSpacing /
                                                geometry.resolution)));

@@ -8,11 +8,11 @@
 #define CARTOGRAPHER_SDF_PLACE_SURFACE_MODEL_H_
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "cartographer_sdf/field/distance_field.h"
+#include "cartographer_sdf/place/surface_cells.h"
 
 namespace cartographer_sdf {
 
@@ -21,18 +21,9 @@ struct SurfacePoint {
   double weight;             // how surely it is occupied, in (0, 1]
 };
 
-// One cell of the distance field, in four bytes: verification is bound by
-// memory.
-struct SurfaceCell {
-  int16_t distance;  // signed distance to the nearest wall [mm], saturated
-  // Certainty that the cell is free, 0 (occupied or unknown) to 255.
-  uint8_t free;
-  bool observed;
-};
-
 struct SurfaceModel {
   CellGeometry geometry;  // of the distance field
-  Eigen::Array<SurfaceCell, Eigen::Dynamic, Eigen::Dynamic> cells;
+  SurfaceCells cells;     // one for each of its cells
   // In a fixed pseudo-random order: the first n are a fair sample of all.
   std::vector<SurfacePoint> walls;
   // Centres of a fair sample of the observed cells, submap frame [m], and the
@@ -58,12 +49,14 @@ struct SurfaceModel {
 [[nodiscard]] double ObservedArea(const SurfaceModel& model);
 [[nodiscard]] Eigen::Vector2d ObservedCentroid(const SurfaceModel& model);
 
-// As SampleField, to half a millimetre, in continuous cell coordinates.
+// As SampleField, to half a millimetre, in continuous cell coordinates; `cells`
+// are those of a model of that geometry.
 [[nodiscard]] inline std::optional<FieldSample> SampleSurface(
-    const SurfaceModel& model, const Eigen::Vector2d& cells) {
-  return InterpolateField(model.geometry, cells,
-                          [&model](const Eigen::Index i, const Eigen::Index j) {
-                            return 1e-3 * model.cells(i, j).distance;
+    const CellGeometry& geometry, const SurfaceCellArray& cells,
+    const Eigen::Vector2d& point) {
+  return InterpolateField(geometry, point,
+                          [&cells](const Eigen::Index i, const Eigen::Index j) {
+                            return 1e-3 * cells(i, j).distance;
                           });
 }
 

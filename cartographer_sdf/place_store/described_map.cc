@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "cartographer_sdf/place/field_memory.h"
 #include "cartographer_sdf/place_store/place_file.h"
 
 namespace cartographer_sdf {
@@ -68,8 +69,12 @@ absl::StatusOr<DescribedMap> DescribeMap(const PlaceOptions& place_options,
                                          const PointClouds point_clouds) {
   std::map<SubmapId, Place> places;
   std::map<SubmapId, OccupancyGrid> batch;
+  FieldMemory memory(place_options);
   const auto describe_batch = [&] {
-    places.merge(DescribePlaces(place_options, match_options, batch, executor));
+    std::map<SubmapId, Place> described =
+        DescribePlaces(place_options, match_options, batch, executor);
+    memory.Add(&described);
+    places.merge(described);
     batch.clear();
   };
   const auto add = [&](const SubmapId& id, const SubmapSummary&,
@@ -108,6 +113,7 @@ absl::StatusOr<RememberedMap> RememberMap(
   if (!map.ok()) return map.status();
   RememberedMap remembered{*std::move(map), places.ok(), ""};
   if (places.ok()) {
+    FieldMemory(place_options).Add(&*places);
     remembered.map.places = *std::move(places);
     return remembered;
   }

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/place_store/place_file.h"
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
@@ -21,7 +22,7 @@ namespace {
 constexpr char kKind[] = "cartographer_sdf places";
 // Increment it with every change of the format *or of the description of
 // submaps*.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 absl::Status CheckHeader(const std::string& path, const PlaceFileKey& key,
                          const int version,
@@ -69,12 +70,63 @@ absl::StatusOr<std::map<SubmapId, Place>> ReadRecords(
   }
 }
 
+constexpr uint64_t kHashOffset = 0xcbf29ce484222325u;  // FNV-1a
+constexpr std::streamsize kHashedWordSize = 8;
+
+uint64_t HashOn(const char* const bytes, const std::streamsize count,
+                uint64_t hash) {
+  for (std::streamsize k = 0; k < count; ++k) {
+    hash ^= static_cast<unsigned char>(bytes[k]);
+    hash *= 0x100000001b3u;
+  }
+  return hash;
+}
+
+// Of the length of each record and of the end of its gzip member, which has a
+// checksum and the size of what it holds; none if the file is no container.
+std::optional<uint64_t> HashOfRecords(const int64_t size,
+                                      std::ifstream* const file) {
+  std::array<char, kHashedWordSize> word;
+  file->seekg(0);
+  if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
+  uint64_t hash = HashOn(word.data(), kHashedWordSize, kHashOffset);
+  for (int64_t at = kHashedWordSize; at < size;) {
+    if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
+    hash = HashOn(word.data(), kHashedWordSize, hash);
+    uint64_t length = 0;
+    for (int k = kHashedWordSize - 1; k >= 0; --k) {
+      length = length << 8 | static_cast<unsigned char>(word[k]);
+    }
+    at += kHashedWordSize;
+    if (length < kHashedWordSize || length > static_cast<uint64_t>(size - at)) {
+      return std::nullopt;
+    }
+    at += static_cast<int64_t>(length);
+    file->seekg(at - kHashedWordSize);
+    if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
+    hash = HashOn(word.data(), kHashedWordSize, hash);
+  }
+  return hash;
+}
+
+std::optional<uint64_t> HashOfBytes(std::ifstream* const file) {
+  file->clear();
+  file->seekg(0);
+  uint64_t hash = kHashOffset;
+  std::vector<char> buffer(1 << 16);
+  while (file->good()) {
+    file->read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    hash = HashOn(buffer.data(), file->gcount(), hash);
+  }
+  if (!file->eof()) return std::nullopt;
+  return hash;
+}
+
 using ProtoPlace = proto::place_index::Place;
 
-constexpr int kBytesPerCell = 4;
 constexpr int kNumbersPerFeature = 5;
-// Bound on the number of cells along either axis; 1.6 km at 5 cm.
-constexpr int kMaxNumCells = 1 << 15;
+// Bound on the number of cells of a grid, as of those in maps.
+constexpr int64_t kMaxNumCells = int64_t{1} << 26;
 // Bound on coordinates within a submap [m].
 constexpr double kMaxStoredCoordinate = 1e5;
 
@@ -99,49 +151,24 @@ bool FromProto(const proto::place_index::Pose& proto, Rigid2* const pose) {
   return true;
 }
 
-// Predicts the distance of cell k from the cells before it along x and along y,
-// assuming that the field is a plane.
-uint16_t ExpectedDistance(const SurfaceCell* const cells, const size_t width,
-                          const size_t k) {
-  const auto at = [cells](const size_t index) {
-    return static_cast<int>(cells[index].distance);
-  };
-  const bool has_left = k % width > 0, has_below = k >= width;
-  const int left = has_left ? at(k - 1) : 0;
-  const int below = has_below ? at(k - width) : 0;
-  const int both = has_left && has_below ? at(k - width - 1) : 0;
-  return static_cast<uint16_t>(left + below - both);
-}
-
-// Maps small numbers of either sign to small numbers.
-uint16_t ZigZag(const uint16_t value) {
-  return static_cast<uint16_t>(value << 1 ^ (value & 0x8000 ? 0xffff : 0));
-}
-uint16_t UnZigZag(const uint16_t value) {
-  return static_cast<uint16_t>(value >> 1 ^ (value & 1 ? 0xffff : 0));
+std::string EncodeRuns(const std::vector<uint16_t>& runs) {
+  std::string bytes;
+  bytes.reserve(2 * runs.size());
+  for (const uint16_t word : runs) {
+    bytes.push_back(static_cast<char>(word & 0xff));
+    bytes.push_back(static_cast<char>(word >> 8));
+  }
+  return bytes;
 }
 
 void EncodeSurface(const SurfaceModel& surface, ProtoPlace* const proto) {
   // Fails to compile if a new member would be lost.
   const auto& [geometry, cells, walls, observed_points, area, poses] = surface;
-  static_assert(sizeof(SurfaceCell) == kBytesPerCell);
   proto->set_num_cells_x(geometry.size.x());
   proto->set_num_cells_y(geometry.size.y());
   proto->set_resolution(geometry.resolution);
   *proto->mutable_t_submap_grid() = PoseToProto(geometry.T_submap_grid);
-  const size_t n = static_cast<size_t>(cells.size());
-  std::string& bytes = *proto->mutable_cells();
-  bytes.resize(kBytesPerCell * n);
-  for (size_t k = 0; k < n; ++k) {
-    const SurfaceCell& cell = cells.data()[k];
-    const uint16_t difference = ZigZag(static_cast<uint16_t>(
-        cell.distance -
-        ExpectedDistance(cells.data(), static_cast<size_t>(cells.rows()), k)));
-    bytes[k] = static_cast<char>(difference & 0xff);
-    bytes[n + k] = static_cast<char>(difference >> 8);
-    bytes[2 * n + k] = static_cast<char>(cell.free);
-    bytes[3 * n + k] = static_cast<char>(cell.observed);
-  }
+  proto->set_runs(EncodeRuns(cells.Pack().runs));
   for (const SurfacePoint& wall : walls) {
     proto->add_walls(wall.position.x());
     proto->add_walls(wall.position.y());
@@ -173,18 +200,13 @@ void EncodeFeatures(const FeatureSet& set, ProtoPlace* const proto) {
 
 // Each returns the problem, or an empty string.
 std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
-  const int width = proto.num_cells_x(), height = proto.num_cells_y();
+  const int64_t width = proto.num_cells_x(), height = proto.num_cells_y();
   if (width < 1 || height < 1 || width > kMaxNumCells ||
-      height > kMaxNumCells) {
+      height > kMaxNumCells || width * height > kMaxNumCells) {
     return "has a grid of an impossible size";
   }
-  const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
-  const std::string& bytes = proto.cells();
-  if (bytes.size() != kBytesPerCell * n) {
-    return "has a grid whose cells do not match its size";
-  }
   CellGeometry& geometry = surface->geometry;
-  geometry.size = {width, height};
+  geometry.size = {static_cast<int>(width), static_cast<int>(height)};
   geometry.resolution = proto.resolution();
   if (!(geometry.resolution >= 1e-4 && geometry.resolution <= 100.)) {
     return "has a grid of an impossible resolution";
@@ -192,20 +214,19 @@ std::string DecodeCells(const ProtoPlace& proto, SurfaceModel* const surface) {
   if (!FromProto(proto.t_submap_grid(), &geometry.T_submap_grid)) {
     return "has a grid at an impossible pose";
   }
-  surface->cells.resize(width, height);
-  for (size_t k = 0; k < n; ++k) {
-    const auto byte = [&](const size_t plane) {
-      return static_cast<uint8_t>(bytes[plane * n + k]);
-    };
-    if (byte(3) > 1) return "has a cell with an invalid observed flag";
-    const uint16_t difference =
-        UnZigZag(static_cast<uint16_t>(byte(0) | byte(1) << 8));
-    const uint16_t distance = static_cast<uint16_t>(
-        ExpectedDistance(surface->cells.data(), static_cast<size_t>(width), k) +
-        difference);
-    surface->cells.data()[k] = {static_cast<int16_t>(distance), byte(2),
-                                byte(3) == 1};
+  CellPack pack;
+  pack.size = geometry.size;
+  pack.resolution = geometry.resolution;
+  const std::string& bytes = proto.runs();
+  for (size_t k = 0; k + 1 < bytes.size(); k += 2) {
+    pack.runs.push_back(
+        static_cast<uint16_t>(static_cast<uint8_t>(bytes[k]) |
+                              static_cast<uint8_t>(bytes[k + 1]) << 8));
   }
+  if (bytes.size() % 2 != 0 || !IsValid(pack)) {
+    return "has a grid whose cells do not match its size, or show no wall";
+  }
+  surface->cells = SurfaceCells(std::move(pack));
   return "";
 }
 
@@ -288,24 +309,16 @@ std::string DecodeFeatures(const ProtoPlace& proto, FeatureSet* const set) {
 absl::StatusOr<PlaceFileKey> MakePlaceFileKey(const std::string& map_path,
                                               const std::string& options) {
   errno = 0;
-  std::ifstream file(map_path, std::ios::binary);
-  PlaceFileKey key;
-  key.options = options;
-  key.map_hash = 0xcbf29ce484222325u;
-  std::vector<char> buffer(1 << 16);
-  while (file.good()) {
-    file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    for (std::streamsize k = 0; k < file.gcount(); ++k) {
-      key.map_hash ^= static_cast<unsigned char>(buffer[k]);
-      key.map_hash *= 0x100000001b3u;
-    }
-    key.map_size += file.gcount();
-  }
-  if (!file.eof()) {
+  std::ifstream file(map_path, std::ios::binary | std::ios::ate);
+  const int64_t size = file ? static_cast<int64_t>(file.tellg()) : -1;
+  std::optional<uint64_t> hash;
+  if (size >= 0) hash = HashOfRecords(size, &file);
+  if (size >= 0 && !hash) hash = HashOfBytes(&file);
+  if (!hash) {
     return absl::ErrnoToStatus(errno != 0 ? errno : EIO,
                                absl::StrCat("cannot read ", map_path));
   }
-  return key;
+  return PlaceFileKey{*hash, size, options};
 }
 
 std::string EncodePlaceFileHeader(const PlaceFileKey& key, const int version,

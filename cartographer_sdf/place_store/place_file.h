@@ -23,13 +23,15 @@ namespace cartographer_sdf {
 
 // Identifies the map and options of a place file; with others it is useless.
 struct PlaceFileKey {
-  uint64_t map_hash = 0;  // FNV-1a of all bytes: detects mistakes, not forgery
-  int64_t map_size = 0;   // [bytes]
+  // FNV-1a of the lengths and checksums of all records of a .pbstream, of all
+  // bytes of another file: detects mistakes, not forgery.
+  uint64_t map_hash = 0;
+  int64_t map_size = 0;  // [bytes]
   // All options that places depend on, as text.
   std::string options;
 };
 
-// Reads the whole map; fails if it cannot.
+// Reads a few bytes of each record of the map; fails if it cannot.
 [[nodiscard]] absl::StatusOr<PlaceFileKey> MakePlaceFileKey(
     const std::string& map_path, const std::string& options);
 

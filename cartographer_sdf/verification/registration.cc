@@ -46,17 +46,17 @@ Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
 constexpr size_t kPrefetchedPoints = 64;
 
 // Both columns of the four cells around a point.
-void PrefetchCells(const SurfaceModel& field, const Eigen::Vector2d& cells) {
-  const Eigen::Array2i size = field.geometry.size;
-  if (!(cells.x() >= 0. && cells.y() >= 0. && cells.x() < size.x() - 1 &&
-        cells.y() < size.y() - 1)) {
+void PrefetchCells(const SurfaceCellArray& cells,
+                   const Eigen::Vector2d& point) {
+  if (!(point.x() >= 0. && point.y() >= 0. &&
+        point.x() < static_cast<double>(cells.rows() - 1) &&
+        point.y() < static_cast<double>(cells.cols() - 1))) {
     return;
   }
-  const SurfaceCell* const cell =
-      &field.cells(static_cast<Eigen::Index>(cells.x()),
-                   static_cast<Eigen::Index>(cells.y()));
+  const SurfaceCell* const cell = &cells(static_cast<Eigen::Index>(point.x()),
+                                         static_cast<Eigen::Index>(point.y()));
   __builtin_prefetch(cell);
-  __builtin_prefetch(cell + field.cells.rows());
+  __builtin_prefetch(cell + cells.rows());
 }
 
 // Calls visit(point, p_field, residual, gradient) for the first `count` points
@@ -78,6 +78,7 @@ void VisitField(const SurfaceModel& field,
   const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
   const Eigen::Matrix2d R_field_grid = geometry.T_submap_grid.RotationMatrix();
   const double half_cell = 0.5 * geometry.resolution;
+  const PinnedCells field_cells = field.cells.Pin();
   std::array<Eigen::Vector2d, kPrefetchedPoints> cells;
   for (size_t begin = 0; begin < count; begin += kPrefetchedPoints) {
     const size_t size = std::min(kPrefetchedPoints, count - begin);
@@ -85,10 +86,11 @@ void VisitField(const SurfaceModel& field,
     // is looked at.
     for (size_t k = 0; k < size; ++k) {
       cells[k] = R_cells_points * points[begin + k].position + t_cells_points;
-      PrefetchCells(field, cells[k]);
+      PrefetchCells(*field_cells, cells[k]);
     }
     for (size_t k = 0; k < size; ++k) {
-      const std::optional<FieldSample> sample = SampleSurface(field, cells[k]);
+      const std::optional<FieldSample> sample =
+          SampleSurface(geometry, *field_cells, cells[k]);
       if (!sample) continue;
       const SurfacePoint& point = points[begin + k];
       visit(point,

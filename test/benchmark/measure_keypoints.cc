@@ -44,11 +44,12 @@ void Print(const std::string& subject,
 // The distance field and the keypoints of a place.
 absl::Status Draw(const Place& place, const std::string& path) {
   const SurfaceModel& surface = place.surface;
-  Eigen::ArrayXXf distance(surface.cells.rows(), surface.cells.cols());
-  BoolArray observed(surface.cells.rows(), surface.cells.cols());
-  for (Eigen::Index k = 0; k != surface.cells.size(); ++k) {
-    distance(k) = 1e-3f * static_cast<float>(surface.cells(k).distance);
-    observed(k) = surface.cells(k).observed;
+  const PinnedCells cells = surface.cells.Pin();
+  Eigen::ArrayXXf distance(cells->rows(), cells->cols());
+  BoolArray observed(cells->rows(), cells->cols());
+  for (Eigen::Index k = 0; k != cells->size(); ++k) {
+    distance(k) = 1e-3f * static_cast<float>((*cells)(k).distance);
+    observed(k) = (*cells)(k).observed;
   }
   const Picture picture = DrawDistanceField(
       {surface.geometry, distance, observed}, place.features.features, 500);

@@ -17,6 +17,7 @@
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/matching/place_index.h"
+#include "cartographer_sdf/place/field_memory.h"
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
 #include "cartographer_sdf/recognition/recognize.h"
 #include "gtest/gtest.h"
@@ -96,7 +97,8 @@ std::string Text(const std::map<SubmapId, Place>& places) {
   for (const auto& [id, place] : places) {
     text << id << place.features.descriptors << " "
          << place.surface.walls.size() << " "
-         << place.surface.cells(place.surface.geometry.size.x() - 1, 0).distance
+         << (*place.surface.cells.Pin())(place.surface.geometry.size.x() - 1, 0)
+                .distance
          << " " << place.surface.geometry.size.transpose() << "\n";
     for (const Feature& feature : place.features.features) {
       text << feature.keypoint.clearance << " ";
@@ -220,8 +222,18 @@ std::string SpreadMatches(const RecognitionOptions& options) {
 TEST(OptionEffectsTest, OfPlaces) {
   const Drive drive;
   const std::vector<testing::Scenario<PlaceOptions>> scenarios = {
-      {"", [&drive](const PlaceOptions& options) {
+      {"",
+       [&drive](const PlaceOptions& options) {
          return Text(drive.Describe(options));
+       }},
+      // Few and small places: a thousandth of the bound.
+      {"max_field_megabytes", [&drive](const PlaceOptions& options) {
+         std::map<SubmapId, Place> places = drive.Describe(options);
+         PlaceOptions scaled = options;
+         scaled.max_field_megabytes /= 1e3;
+         FieldMemory memory(scaled);
+         memory.Add(&places);
+         return std::to_string(memory.NumBytes());
        }}};
   EXPECT_EQ(testing::OptionsWithoutEffect(PlaceOptions(), scenarios), "");
 }

@@ -40,6 +40,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* const data,
   const absl::StatusOr<Place> again = DecodePlace(encoded);
   CHECK(again.ok()) << again.status();
   CHECK(EncodePlace(*again) == encoded);
+  constexpr size_t kSmallField = 1 << 22;
+  if (place->surface.cells.NumBytes() < kSmallField) {
+    CHECK(SurfaceCells(PackCells(*place->surface.cells.Pin(),
+                                 place->surface.geometry.resolution))
+              .Pack()
+              .size.prod() > 0);
+  }
   PlaceIndex index((RetrievalOptions()));
   index.Add(place->id, place->features);
   const auto none = [](const SubmapId&) { return false; };

@@ -59,17 +59,18 @@ TEST(SurfaceModelTest, KnowsHowSurelyCellsAreFree) {
   grid.known(6, 0) = false;
   const std::optional<SurfaceModel> model = MakeSurfaceModel(options, grid);
   ASSERT_TRUE(model.has_value());
-  ASSERT_EQ(model->cells.rows(), 11);
-  ASSERT_EQ(model->cells.cols(), 5);
+  const PinnedCells cells = model->cells.Pin();
+  ASSERT_EQ(cells->rows(), 11);
+  ASSERT_EQ(cells->cols(), 5);
   // Of 255; wall, undecided, seen free once, half sure, sure, surer, unknown.
   const std::vector<int> expected = {0, 0, 10, 128, 255, 255, 0};
   int sum = 0;
   for (int i = 0; i < 7; ++i) {
-    EXPECT_EQ(model->cells(i + 2, 2).free, expected[i]) << i;
+    EXPECT_EQ((*cells)(i + 2, 2).free, expected[i]) << i;
     sum += expected[i];
   }
   int total = 0;
-  for (const SurfaceCell& cell : model->cells.reshaped()) total += cell.free;
+  for (const SurfaceCell& cell : cells->reshaped()) total += cell.free;
   EXPECT_EQ(total, sum) << "the padding is unknown";
 }
 

@@ -14,6 +14,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 #include "test/testing/random_number.h"
+#include "test/testing/small_map.h"
 #include "test/testing/temporary_directory.h"
 
 namespace cartographer_sdf::place_file_test {
@@ -42,9 +43,12 @@ void ExpectSame(const Place& a, const Place& b) {
   ASSERT_TRUE((g.size == h.size).all());
   EXPECT_EQ(g.resolution, h.resolution);
   ExpectSame(g.T_submap_grid, h.T_submap_grid);
-  for (Eigen::Index k = 0; k < a.surface.cells.size(); ++k) {
-    const SurfaceCell& c = a.surface.cells.data()[k];
-    const SurfaceCell& d = b.surface.cells.data()[k];
+  const PinnedCells a_cells = a.surface.cells.Pin();
+  const PinnedCells b_cells = b.surface.cells.Pin();
+  ASSERT_EQ(a_cells->size(), b_cells->size());
+  for (Eigen::Index k = 0; k < a_cells->size(); ++k) {
+    const SurfaceCell& c = a_cells->data()[k];
+    const SurfaceCell& d = b_cells->data()[k];
     ASSERT_EQ(c.distance, d.distance) << k;
     ASSERT_EQ(c.free, d.free) << k;
     ASSERT_EQ(c.observed, d.observed) << k;
@@ -147,6 +151,31 @@ TEST_F(PlaceFileTest, RefusesWhatBelongsToSomethingElse) {
   EXPECT_THAT(Error(key), HasSubstr("another map"));
 }
 
+// Without a look at most of its bytes.
+TEST_F(PlaceFileTest, BelongsToTheRecordsOfAMap) {
+  const auto key = [this](const std::vector<std::string>& records) {
+    const std::string path =
+        directory_.Write("map", testing::Container(records));
+    const auto made = MakePlaceFileKey(path, "options");
+    EXPECT_TRUE(made.ok()) << made.status();
+    return made->map_hash;
+  };
+  const std::string grid(100000, 'g');
+  std::string other = grid;
+  other[50000] = 'h';
+  const uint64_t hash = key({"graph", grid, "node"});
+  EXPECT_EQ(key({"graph", grid, "node"}), hash);
+  EXPECT_NE(key({"graph", other, "node"}), hash);
+  EXPECT_NE(key({"graph", "node", grid}), hash);
+  EXPECT_NE(key({"graph", grid}), hash);
+  // A file that was cut has a key, too.
+  std::string cut = testing::Container({"graph", grid, "node"});
+  cut.pop_back();
+  const auto made = MakePlaceFileKey(directory_.Write("cut", cut), "options");
+  ASSERT_TRUE(made.ok()) << made.status();
+  EXPECT_NE(made->map_hash, hash);
+}
+
 TEST_F(PlaceFileTest, NeedsAMapThatCanBeRead) {
   const auto key = MakePlaceFileKey(directory_.File("none"), "");
   ASSERT_FALSE(key.ok());
@@ -240,9 +269,26 @@ TEST(PlaceCodecTest, ImpossiblePlacesAreErrors) {
       {"size", [](ProtoPlace* p) { p->set_num_cells_x(0); }},
       {"size", [](ProtoPlace* p) { p->set_num_cells_y(-5); }},
       {"size", [](ProtoPlace* p) { p->set_num_cells_y(1 << 30); }},
+      {"size", [](ProtoPlace* p) { p->set_num_cells_x(1 << 20); }},
       {"cells", [](ProtoPlace* p) { p->set_num_cells_x(1 << 15); }},
-      {"cells", [](ProtoPlace* p) { p->mutable_cells()->pop_back(); }},
-      {"observed", [](ProtoPlace* p) { p->mutable_cells()->back() = 2; }},
+      {"cells", [](ProtoPlace* p) { p->mutable_runs()->pop_back(); }},
+      {"cells", [](ProtoPlace* p) { p->mutable_runs()->resize(10); }},
+      {"cells",
+       [](ProtoPlace* p) {
+         (*p->mutable_runs())[0] = static_cast<char>(0xff);
+         (*p->mutable_runs())[1] |= 1;
+       }},
+      {"no wall",
+       [](ProtoPlace* p) {
+         // One run of unknown cells, as many as there are.
+         const uint32_t n = static_cast<uint32_t>(p->num_cells_x()) *
+                            static_cast<uint32_t>(p->num_cells_y());
+         std::string runs = {0, static_cast<char>(127 << 1)};
+         for (int k = 0; k < 4; ++k) {
+           runs.push_back(static_cast<char>(n >> 8 * k & 0xff));
+         }
+         p->set_runs(runs);
+       }},
       {"resolution", [](ProtoPlace* p) { p->set_resolution(0.); }},
       {"resolution", [nan](ProtoPlace* p) { p->set_resolution(nan); }},
       {"pose",

@@ -54,7 +54,7 @@ inline bool IsObserved(const SurfaceModel& surface,
                        const Eigen::Vector2d& p_submap) {
   const Eigen::Array2i cell = surface.geometry.CellAt(p_submap);
   return surface.geometry.Contains(cell) &&
-         surface.cells(cell.x(), cell.y()).observed;
+         (*surface.cells.Pin())(cell.x(), cell.y()).observed;
 }
 
 struct Found {

@@ -240,7 +240,7 @@ TEST(HardPlacesTest, NoKeypointLiesInTheUnknown) {
     const Eigen::Array2i cell =
         surface.geometry.CellAt(feature.keypoint.position);
     ASSERT_TRUE(surface.geometry.Contains(cell));
-    EXPECT_TRUE(surface.cells(cell.x(), cell.y()).observed);
+    EXPECT_TRUE((*surface.cells.Pin())(cell.x(), cell.y()).observed);
   }
   // Half of what one sees of a place may be all that there is to go by: no
   // promise but that the answer, if accepted, is right.

@@ -75,7 +75,7 @@ std::vector<std::optional<WeightedDistance>> Distances(
   std::vector<std::optional<WeightedDistance>> distances;
   for (size_t k = 0; k < points.size() && k < 300; ++k) {
     const std::optional<FieldSample> sample = SampleSurface(
-        field,
+        field.geometry, *field.cells.Pin(),
         field.geometry.GridToCells(field.geometry.T_submap_grid.Inverse() *
                                    (T_field_points * points[k].position)));
     distances.emplace_back();
