@@ -147,7 +147,7 @@ class NeighbourhoodMeasurer {
   [[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
                                     const SurfaceModel& query,
                                     const Rigid2& pose) const {
-    return OverlapArea(reference, query, pose) >= options_.min_overlap_area;
+    return OverlapsBy(options_.min_overlap_area, reference, query, pose);
   }
 
   // In the frame of the match's reference, by local SLAM.

@@ -17,7 +17,7 @@ bool IsBroken(const TrajectoryLinkOptions& options,
               const VerificationOptions& verification,
               const SurfaceModel& first, const SurfaceModel& second,
               const Rigid2& T_first_second) {
-  if (OverlapArea(first, second, T_first_second) < options.min_overlap_area) {
+  if (!OverlapsBy(options.min_overlap_area, first, second, T_first_second)) {
     return false;
   }
   const std::optional<MeasuredPose> measured =

@@ -58,26 +58,26 @@ class Tiles {
   // beyond the grid have no cell there and hence no tile.
   class Adder {
    public:
-    Adder(Tiles* const tiles, const Rigid2& T_submap_points) : tiles_(tiles) {
+    Adder(Tiles* const tiles, const Rigid2& T_submap_points)
+        : tiles_(tiles), last_(tiles->size_ - 1) {
       const Rigid2 T_grid_points = tiles->T_grid_submap_ * T_submap_points;
       rotation_ = T_grid_points.RotationMatrix() / kTileSize;
       translation_ = T_grid_points.translation() / kTileSize;
     }
     void operator()(const Eigen::Vector2d& point, const double weight,
                     const bool is_hit) const {
-      const Eigen::Array2i index = (rotation_ * point + translation_)
-                                       .array()
-                                       .floor()
-                                       .cast<int>()
-                                       .max(0)
-                                       .min(tiles_->size_ - 1);
-      Tile& tile = tiles_->tiles_[index.x() * tiles_->size_.y() + index.y()];
+      const Eigen::Vector2d at = rotation_ * point + translation_;
+      // Towards zero is downwards, where it is not below the first.
+      const int i = std::clamp(static_cast<int>(at.x()), 0, last_.x());
+      const int j = std::clamp(static_cast<int>(at.y()), 0, last_.y());
+      Tile& tile = tiles_->tiles_[i * (last_.y() + 1) + j];
       tile.weight += weight;
-      if (is_hit) tile.hits += weight;
+      tile.hits += is_hit * weight;
     }
 
    private:
     Tiles* const tiles_;
+    const Eigen::Array2i last_;
     Eigen::Matrix2d rotation_;
     Eigen::Vector2d translation_;
   };
@@ -105,8 +105,21 @@ class Tiles {
   std::vector<Tile> tiles_;
 };
 
-// Adds up the points and calls visit(point, weight, is_hit) for each that lies
-// within what the model has observed.
+// Certainties as fractions.
+const std::array<double, 256>& Fractions() {
+  static const std::array<double, 256> fractions = [] {
+    std::array<double, 256> result = {};
+    for (size_t k = 0; k < result.size(); ++k) {
+      result[k] = static_cast<double>(k) / 255.;
+    }
+    return result;
+  }();
+  return fractions;
+}
+
+// Adds up the points and calls visit(point, weight, is_hit) for each in the
+// model; the weight is zero outside of what the model has observed. Without
+// branches, as nobody could tell which points hit.
 template <typename Visitor>
 DirectedAgreement Measure(const AgreementOptions& options,
                           const SurfaceModel& model,
@@ -114,27 +127,61 @@ DirectedAgreement Measure(const AgreementOptions& options,
                           const Rigid2& T_model_points, const Visitor& visit) {
   const double hit = 1e3 * options.hit_distance_meters;
   const double contradiction = 1e3 * options.contradiction_distance_meters;
+  const std::array<double, 256>& fractions = Fractions();
+  const bool weighs = options.weigh_by_certainty;
   DirectedAgreement result;
-  VisitCells(
-      model, points, T_model_points, options.max_num_points,
-      [&](const SurfacePoint& point, const SurfaceCell& cell) {
-        const double distance = std::abs(cell.distance);
-        // Walls border on the unknown, so a hit may well lie in it.
-        const bool is_hit = distance <= hit;
-        if (!is_hit && !cell.observed) return;
-        const double weight = options.weigh_by_certainty ? point.weight : 1.;
-        result.num_points += weight;
-        if (is_hit) {
-          result.hits += weight;
-          result.squared_distance += weight * distance * distance;
-        } else if (distance > contradiction) {
-          result.contradictions +=
-              weight * (options.weigh_by_certainty ? cell.free / 255. : 1.);
-        }
-        visit(point, weight, is_hit);
-      });
+  VisitCells(model, points, T_model_points, options.max_num_points,
+             [&](const SurfacePoint& point, const SurfaceCell& cell) {
+               const double distance = std::abs(cell.distance);
+               // Walls border on the unknown, so a hit may well lie in it.
+               const bool is_hit = distance <= hit;
+               const double weight =
+                   (weighs ? point.weight : 1.) * (is_hit | cell.observed);
+               const double hit_weight = weight * is_hit;
+               result.num_points += weight;
+               result.hits += hit_weight;
+               result.squared_distance += hit_weight * distance * distance;
+               result.contradictions += weight *
+                                        (weighs ? fractions[cell.free] : 1.) *
+                                        (!is_hit & (distance > contradiction));
+               visit(point, weight, is_hit);
+             });
   result.squared_distance *= 1e-6;
   return result;
+}
+
+size_t NumOverlapPoints(const SurfaceModel& query, const int max_num_points) {
+  return std::min(query.observed_points.size(),
+                  static_cast<size_t>(max_num_points));
+}
+
+// Calls visit(point, is_observed) for the first observed points of the query,
+// with whether the reference has observed them, too, until it returns false.
+template <typename Visitor>
+void VisitObserved(const SurfaceModel& reference, const SurfaceModel& query,
+                   const Rigid2& T_reference_query, const size_t num_points,
+                   const Visitor& visit) {
+  const SurfaceCellLookup lookup(reference, T_reference_query);
+  std::array<const SurfaceCell*, kChunkSize> cells;
+  for (size_t begin = 0; begin < num_points; begin += kChunkSize) {
+    const size_t size = std::min(kChunkSize, num_points - begin);
+    for (size_t k = 0; k < size; ++k) {
+      cells[k] = lookup.Find(query.observed_points[begin + k]);
+      __builtin_prefetch(cells[k]);
+    }
+    for (size_t k = 0; k < size; ++k) {
+      const bool is_observed = cells[k] != nullptr && cells[k]->observed;
+      if (!visit(query.observed_points[begin + k], is_observed)) return;
+    }
+  }
+}
+
+// That `count` of the first `num_points` observed points stand for [m^2].
+double AreaOfPoints(const SurfaceModel& query, const int count,
+                    const size_t num_points) {
+  return count * query.area_per_observed_point *
+         static_cast<double>(query.observed_points.size()) /
+         static_cast<double>(num_points);
 }
 
 }  // namespace
@@ -190,31 +237,52 @@ PairAgreement MeasurePairAgreement(const AgreementOptions& options,
 
 double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
                    const Rigid2& T_reference_query, const int max_num_points) {
-  const SurfaceCellLookup lookup(reference, T_reference_query);
-  const size_t num_points = std::min(query.observed_points.size(),
-                                     static_cast<size_t>(max_num_points));
+  const size_t num_points = NumOverlapPoints(query, max_num_points);
   int count = 0;
-  for (size_t k = 0; k < num_points; ++k) {
-    const SurfaceCell* const cell = lookup.Find(query.observed_points[k]);
-    count += cell != nullptr && cell->observed;
+  VisitObserved(reference, query, T_reference_query, num_points,
+                [&count](const Eigen::Vector2d&, const bool is_observed) {
+                  count += is_observed;
+                  return true;
+                });
+  return AreaOfPoints(query, count, num_points);
+}
+
+bool OverlapsBy(const double min_area, const SurfaceModel& reference,
+                const SurfaceModel& query, const Rigid2& T_reference_query,
+                const int max_num_points) {
+  const size_t num_points = NumOverlapPoints(query, max_num_points);
+  const int size = static_cast<int>(num_points);
+  // As many as the area takes; to the point, whatever the rounding.
+  int needed = static_cast<int>(
+      std::clamp(min_area / AreaOfPoints(query, 1, num_points) - 1., 0.,
+                 static_cast<double>(size)));
+  while (needed <= size && AreaOfPoints(query, needed, num_points) < min_area) {
+    ++needed;
   }
-  return count * query.area_per_observed_point *
-         static_cast<double>(query.observed_points.size()) /
-         static_cast<double>(num_points);
+  // Not observed, of as many as may be missing.
+  int num_missing = 0;
+  int count = 0;
+  VisitObserved(reference, query, T_reference_query, num_points,
+                [&](const Eigen::Vector2d&, const bool is_observed) {
+                  count += is_observed;
+                  num_missing += !is_observed;
+                  return count < needed && num_missing <= size - needed;
+                });
+  return count >= needed;
 }
 
 std::optional<Eigen::Vector2d> OverlapCentroid(
     const SurfaceModel& reference, const SurfaceModel& query,
     const Rigid2& T_reference_query) {
-  const SurfaceCellLookup lookup(reference, T_reference_query);
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int count = 0;
-  for (const Eigen::Vector2d& point : query.observed_points) {
-    const SurfaceCell* const cell = lookup.Find(point);
-    if (cell == nullptr || !cell->observed) continue;
-    sum += point;
-    ++count;
-  }
+  VisitObserved(reference, query, T_reference_query,
+                query.observed_points.size(),
+                [&](const Eigen::Vector2d& point, const bool is_observed) {
+                  if (is_observed) sum += point;
+                  count += is_observed;
+                  return true;
+                });
   if (count == 0) return std::nullopt;
   return Eigen::Vector2d(sum / count);
 }
@@ -224,20 +292,24 @@ std::set<TileIndex> OverlapTiles(const SurfaceModel& reference,
                                  const Rigid2& T_reference_query,
                                  const Rigid2& T_frame_reference,
                                  const double tile_size) {
-  const SurfaceCellLookup lookup(reference, T_reference_query);
   const Rigid2 T_frame_query = T_frame_reference * T_reference_query;
-  const size_t num_points = std::min(query.observed_points.size(),
-                                     static_cast<size_t>(kMaxNumOverlapPoints));
-  std::set<TileIndex> tiles;
-  for (size_t k = 0; k < num_points; ++k) {
-    const SurfaceCell* const cell = lookup.Find(query.observed_points[k]);
-    if (cell == nullptr || !cell->observed) continue;
-    const Eigen::Vector2d tile =
-        (T_frame_query * query.observed_points[k]) / tile_size;
-    tiles.emplace(static_cast<int>(std::floor(tile.x())),
-                  static_cast<int>(std::floor(tile.y())));
-  }
-  return tiles;
+  const Eigen::Matrix2d R_frame_query = T_frame_query.RotationMatrix();
+  std::vector<TileIndex> tiles;
+  VisitObserved(reference, query, T_reference_query,
+                NumOverlapPoints(query, kMaxNumOverlapPoints),
+                [&](const Eigen::Vector2d& point, const bool is_observed) {
+                  if (!is_observed) return true;
+                  const Eigen::Vector2d tile =
+                      (R_frame_query * point + T_frame_query.translation()) /
+                      tile_size;
+                  tiles.emplace_back(static_cast<int>(std::floor(tile.x())),
+                                     static_cast<int>(std::floor(tile.y())));
+                  return true;
+                });
+  // Cheaper than a set that most points are in already.
+  std::sort(tiles.begin(), tiles.end());
+  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
+  return {tiles.begin(), tiles.end()};
 }
 
 }  // namespace cartographer_sdf

@@ -81,6 +81,13 @@ constexpr int kMaxNumOverlapPoints = 1000;
                                  const Rigid2& T_reference_query,
                                  int max_num_points = kMaxNumOverlapPoints);
 
+// Whether OverlapArea would return at least `min_area` [m^2]. Looks at no more
+// points than it takes to know.
+[[nodiscard]] bool OverlapsBy(double min_area, const SurfaceModel& reference,
+                              const SurfaceModel& query,
+                              const Rigid2& T_reference_query,
+                              int max_num_points = kMaxNumOverlapPoints);
+
 // Its centroid in the query frame [m]; none where nothing is observed by both.
 [[nodiscard]] std::optional<Eigen::Vector2d> OverlapCentroid(
     const SurfaceModel& reference, const SurfaceModel& query,

@@ -20,83 +20,164 @@ struct NormalEquations {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();  // the lower triangle
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double sum_of_weights = 0.;
-
-  void Add(const double weight, const double residual,
-           const Eigen::Vector3d& jacobian) {
-    const Eigen::Vector3d weighted = weight * jacobian;
-    for (int column = 0; column < 3; ++column) {
-      for (int row = column; row < 3; ++row) {
-        A(row, column) += weighted[row] * jacobian[column];
-      }
-    }
-    b.noalias() -= residual * weighted;
-    sum_of_weights += weight;
-  }
 };
 
-double GemanMcClureWeight(const double residual, const double scale) {
-  const double ratio = 1. + residual * residual / (scale * scale);
-  return 1. / (ratio * ratio);
-}
+constexpr size_t kChunkOfPoints = 64;
+using Numbers = std::array<double, kChunkOfPoints>;
+using CellDistances = std::array<int, kChunkOfPoints>;
 
-Eigen::Vector2d Perpendicular(const Eigen::Vector2d& v) {
-  return Eigen::Vector2d(-v.y(), v.x());
-}
+// Numbers of those points of a chunk that fall into the field, side by side, so
+// that compilers treat several at once: registration is the larger half of
+// recognition.
+struct FieldPoints {
+  size_t size = 0;
+  // Where they are: in the frame of the points, and in cells from the corner
+  // of four cells [m, cells].
+  Numbers x, y, u, v;
+  Numbers weight;
+  std::array<const SurfaceCell*, kChunkOfPoints> cells;
+  // CellDistances of the four cells [mm].
+  CellDistances d00, d10, d01, d11;
+  // To the middle of a wall [m]: a wall's cells are its points, and the field
+  // is zero on their edge, half a cell away.
+  Numbers residual;
+  Numbers gradient_x, gradient_y;  // of that, in the frame of the field
+  Numbers field_x, field_y;        // the points in the frame of the field [m]
+  // Of the residual by the pose.
+  Numbers jacobian_x, jacobian_y, jacobian_yaw;
+};
 
-constexpr size_t kPrefetchedPoints = 64;
-
-// Both columns of the four cells around a point.
-void PrefetchCells(const SurfaceCellArray& cells,
-                   const Eigen::Vector2d& point) {
-  if (!(point.x() >= 0. && point.y() >= 0. &&
-        point.x() < static_cast<double>(cells.rows() - 1) &&
-        point.y() < static_cast<double>(cells.cols() - 1))) {
-    return;
+struct FieldPose {
+  FieldPose(const CellGeometry& geometry, const Rigid2& T_field_points)
+      : R_field_points(T_field_points.RotationMatrix()),
+        t_field_points(T_field_points.translation()),
+        R_field_grid(geometry.T_submap_grid.RotationMatrix()) {
+    const Rigid2 T_grid_points =
+        geometry.T_submap_grid.Inverse() * T_field_points;
+    R_cells_points = T_grid_points.RotationMatrix() / geometry.resolution;
+    t_cells_points = geometry.GridToCells(T_grid_points.translation());
   }
-  const SurfaceCell* const cell = &cells(static_cast<Eigen::Index>(point.x()),
-                                         static_cast<Eigen::Index>(point.y()));
-  __builtin_prefetch(cell);
-  __builtin_prefetch(cell + cells.rows());
+
+  Eigen::Matrix2d R_field_points;
+  Eigen::Vector2d t_field_points;
+  Eigen::Matrix2d R_field_grid;
+  Eigen::Matrix2d R_cells_points;
+  Eigen::Vector2d t_cells_points;
+};
+
+// Finds the cells of the points. They lie far apart in memory: all are on their
+// way before the first is looked at.
+void FindCells(const SurfaceCellArray& cells, const FieldPose& pose,
+               const SurfacePoint* const points, const size_t count,
+               FieldPoints* const found) {
+  const double end_x = static_cast<double>(cells.rows() - 1);
+  const double end_y = static_cast<double>(cells.cols() - 1);
+  size_t size = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const Eigen::Vector2d& p = points[k].position;
+    const double x = pose.R_cells_points(0, 0) * p.x() +
+                     pose.R_cells_points(0, 1) * p.y() +
+                     pose.t_cells_points.x();
+    const double y = pose.R_cells_points(1, 0) * p.x() +
+                     pose.R_cells_points(1, 1) * p.y() +
+                     pose.t_cells_points.y();
+    if (!(x >= 0. && y >= 0. && x < end_x && y < end_y)) continue;
+    const Eigen::Index i = static_cast<Eigen::Index>(x);
+    const Eigen::Index j = static_cast<Eigen::Index>(y);
+    const SurfaceCell* const cell = &cells(i, j);
+    __builtin_prefetch(cell);
+    __builtin_prefetch(cell + cells.rows());
+    found->cells[size] = cell;
+    found->u[size] = x - static_cast<double>(i);
+    found->v[size] = y - static_cast<double>(j);
+    found->x[size] = p.x();
+    found->y[size] = p.y();
+    found->weight[size] = points[k].weight;
+    ++size;
+  }
+  found->size = size;
+  const Eigen::Index stride = cells.rows();
+  for (size_t k = 0; k < size; ++k) {
+    const SurfaceCell* const cell = found->cells[k];
+    found->d00[k] = cell[0].distance;
+    found->d10[k] = cell[1].distance;
+    found->d01[k] = cell[stride].distance;
+    found->d11[k] = cell[stride + 1].distance;
+  }
 }
 
-// Calls visit(point, p_field, residual, gradient) for the first `count` points
-// that fall into the field: the point in the field's frame [m], its distance to
-// the middle of a wall [m] and the gradient of that in the field's frame. A
-// wall's cells are its points, and the field is zero on their edge, half a cell
-// away.
-template <typename Visitor>
-void VisitField(const SurfaceModel& field,
-                const std::vector<SurfacePoint>& points, const size_t count,
-                const Rigid2& T_field_points, const Visitor& visit) {
-  const CellGeometry& geometry = field.geometry;
-  const Rigid2 T_grid_points =
-      geometry.T_submap_grid.Inverse() * T_field_points;
-  const Eigen::Matrix2d R_cells_points =
-      T_grid_points.RotationMatrix() / geometry.resolution;
-  const Eigen::Vector2d t_cells_points =
-      geometry.GridToCells(T_grid_points.translation());
-  const Eigen::Matrix2d R_field_points = T_field_points.RotationMatrix();
-  const Eigen::Matrix2d R_field_grid = geometry.T_submap_grid.RotationMatrix();
-  const double half_cell = 0.5 * geometry.resolution;
-  const PinnedCells field_cells = field.cells.Pin();
-  std::array<Eigen::Vector2d, kPrefetchedPoints> cells;
-  for (size_t begin = 0; begin < count; begin += kPrefetchedPoints) {
-    const size_t size = std::min(kPrefetchedPoints, count - begin);
-    // The cells lie far apart in memory: all are on their way before the first
-    // is looked at.
-    for (size_t k = 0; k < size; ++k) {
-      cells[k] = R_cells_points * points[begin + k].position + t_cells_points;
-      PrefetchCells(*field_cells, cells[k]);
-    }
-    for (size_t k = 0; k < size; ++k) {
-      const std::optional<FieldSample> sample =
-          SampleSurface(geometry, *field_cells, cells[k]);
-      if (!sample) continue;
-      const SurfacePoint& point = points[begin + k];
-      visit(point,
-            R_field_points * point.position + T_field_points.translation(),
-            sample->distance + half_cell, R_field_grid * sample->gradient);
-    }
+// As InterpolateField, and the points themselves in the frame of the field.
+void Interpolate(const FieldPose& pose, const double resolution,
+                 FieldPoints* const points) {
+  FieldPoints& p = *points;
+  const double half_cell = 0.5 * resolution;
+  for (size_t k = 0; k < p.size; ++k) {
+    const double f00 = 1e-3 * p.d00[k], f10 = 1e-3 * p.d10[k];
+    const double f01 = 1e-3 * p.d01[k], f11 = 1e-3 * p.d11[k];
+    const double bottom = f00 + p.u[k] * (f10 - f00);
+    const double top = f01 + p.u[k] * (f11 - f01);
+    const double along_x =
+        ((1. - p.v[k]) * (f10 - f00) + p.v[k] * (f11 - f01)) / resolution;
+    const double along_y = (top - bottom) / resolution;
+    p.residual[k] = bottom + p.v[k] * (top - bottom) + half_cell;
+    p.gradient_x[k] =
+        pose.R_field_grid(0, 0) * along_x + pose.R_field_grid(0, 1) * along_y;
+    p.gradient_y[k] =
+        pose.R_field_grid(1, 0) * along_x + pose.R_field_grid(1, 1) * along_y;
+    p.field_x[k] = pose.R_field_points(0, 0) * p.x[k] +
+                   pose.R_field_points(0, 1) * p.y[k] + pose.t_field_points.x();
+    p.field_y[k] = pose.R_field_points(1, 0) * p.x[k] +
+                   pose.R_field_points(1, 1) * p.y[k] + pose.t_field_points.y();
+  }
+}
+
+// Weighs the residuals as Geman and McClure do, and adds them up in the order
+// of the points.
+void AddResiduals(const double scale, FieldPoints* const points,
+                  NormalEquations* const equations) {
+  FieldPoints& p = *points;
+  const double squared_scale = scale * scale;
+  for (size_t k = 0; k < p.size; ++k) {
+    const double ratio = 1. + p.residual[k] * p.residual[k] / squared_scale;
+    p.weight[k] *= 1. / (ratio * ratio);
+  }
+  NormalEquations sums = *equations;
+  for (size_t k = 0; k < p.size; ++k) {
+    const double x = p.jacobian_x[k], y = p.jacobian_y[k];
+    const double yaw = p.jacobian_yaw[k];
+    const double weighted_x = p.weight[k] * x, weighted_y = p.weight[k] * y;
+    const double weighted_yaw = p.weight[k] * yaw;
+    sums.A(0, 0) += weighted_x * x;
+    sums.A(1, 0) += weighted_y * x;
+    sums.A(2, 0) += weighted_yaw * x;
+    sums.A(1, 1) += weighted_y * y;
+    sums.A(2, 1) += weighted_yaw * y;
+    sums.A(2, 2) += weighted_yaw * yaw;
+    sums.b[0] -= p.residual[k] * weighted_x;
+    sums.b[1] -= p.residual[k] * weighted_y;
+    sums.b[2] -= p.residual[k] * weighted_yaw;
+    sums.sum_of_weights += p.weight[k];
+  }
+  *equations = sums;
+}
+
+// Calls set_jacobian(points) for the first `count` points, some at a time, and
+// adds their residuals.
+template <typename SetJacobian>
+void AddPoints(const SurfaceModel& field,
+               const std::vector<SurfacePoint>& points, const size_t count,
+               const Rigid2& T_field_points, const double scale,
+               const SetJacobian& set_jacobian,
+               NormalEquations* const equations) {
+  const FieldPose pose(field.geometry, T_field_points);
+  const PinnedCells cells = field.cells.Pin();
+  FieldPoints found;
+  for (size_t begin = 0; begin < count; begin += kChunkOfPoints) {
+    FindCells(*cells, pose, points.data() + begin,
+              std::min(kChunkOfPoints, count - begin), &found);
+    Interpolate(pose, field.geometry.resolution, &found);
+    set_jacobian(&found);
+    AddResiduals(scale, &found, equations);
   }
 }
 
@@ -105,15 +186,21 @@ void AddForward(const SurfaceModel& field,
                 const std::vector<SurfacePoint>& points, const size_t count,
                 const Rigid2& T_field_points, const double scale,
                 NormalEquations* const equations) {
-  VisitField(
-      field, points, count, T_field_points,
-      [&](const SurfacePoint& point, const Eigen::Vector2d& p_field,
-          const double residual, const Eigen::Vector2d& gradient) {
-        const Eigen::Vector2d arm = p_field - T_field_points.translation();
-        equations->Add(
-            point.weight * GemanMcClureWeight(residual, scale), residual,
-            {gradient.x(), gradient.y(), gradient.dot(Perpendicular(arm))});
-      });
+  const Eigen::Vector2d& origin = T_field_points.translation();
+  AddPoints(
+      field, points, count, T_field_points, scale,
+      [&origin](FieldPoints* const found) {
+        FieldPoints& p = *found;
+        for (size_t k = 0; k < p.size; ++k) {
+          const double arm_x = p.field_x[k] - origin.x();
+          const double arm_y = p.field_y[k] - origin.y();
+          p.jacobian_x[k] = p.gradient_x[k];
+          p.jacobian_y[k] = p.gradient_y[k];
+          p.jacobian_yaw[k] =
+              p.gradient_x[k] * -arm_y + p.gradient_y[k] * arm_x;
+        }
+      },
+      equations);
 }
 
 // Points that stand, against a field of the frame that moves.
@@ -121,16 +208,19 @@ void AddBackward(const SurfaceModel& field,
                  const std::vector<SurfacePoint>& points, const size_t count,
                  const Rigid2& T_points_field, const double scale,
                  NormalEquations* const equations) {
-  const Eigen::Matrix2d R_points_field = T_points_field.RotationMatrix();
-  VisitField(field, points, count, T_points_field.Inverse(),
-             [&](const SurfacePoint& point, const Eigen::Vector2d& p_field,
-                 const double residual, const Eigen::Vector2d& gradient) {
-               const Eigen::Vector2d translation = -(R_points_field * gradient);
-               equations->Add(
-                   point.weight * GemanMcClureWeight(residual, scale), residual,
-                   {translation.x(), translation.y(),
-                    -gradient.dot(Perpendicular(p_field))});
-             });
+  const Eigen::Matrix2d R = T_points_field.RotationMatrix();
+  AddPoints(
+      field, points, count, T_points_field.Inverse(), scale,
+      [&R](FieldPoints* const found) {
+        FieldPoints& p = *found;
+        for (size_t k = 0; k < p.size; ++k) {
+          const double x = p.gradient_x[k], y = p.gradient_y[k];
+          p.jacobian_x[k] = -(R(0, 0) * x + R(0, 1) * y);
+          p.jacobian_y[k] = -(R(1, 0) * x + R(1, 1) * y);
+          p.jacobian_yaw[k] = -(x * -p.field_y[k] + y * p.field_x[k]);
+        }
+      },
+      equations);
 }
 
 // The coarse half of the iterations brings the pose near with a third of the

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/verification/agreement.h"
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <vector>
@@ -210,9 +211,22 @@ TEST(OverlapAreaTest, IsTheBruteForceOne) {
         BruteForceOverlapArea(reference_grid, query_grid, pose);
     ASSERT_GT(expected, 5.);
     // One point for 0.06 m^2: some 100 to 400 of them.
-    EXPECT_NEAR(OverlapArea(reference, query, pose), expected,
-                0.025 * expected);
+    const double area = OverlapArea(reference, query, pose);
+    EXPECT_NEAR(area, expected, 0.025 * expected);
+    // The same answer, whatever the rounding, without a look at all points.
+    const double huge = std::numeric_limits<double>::max();
+    for (const double bound :
+         {0., 0.3 * area, std::nextafter(area, 0.), area,
+          std::nextafter(area, huge), 1.1 * area, 1e6, huge}) {
+      EXPECT_EQ(OverlapsBy(bound, reference, query, pose), area >= bound)
+          << bound;
+      EXPECT_EQ(OverlapsBy(bound, reference, query, pose, 70),
+                OverlapArea(reference, query, pose, 70) >= bound)
+          << bound;
+    }
   }
+  EXPECT_TRUE(OverlapsBy(0., reference, query, Rigid2(100., 0., 0.)));
+  EXPECT_FALSE(OverlapsBy(1e-9, reference, query, Rigid2(100., 0., 0.)));
   EXPECT_EQ(OverlapArea(reference, query, Rigid2(100., 0., 0.)), 0.);
 }
 
