@@ -32,7 +32,7 @@ PACKAGES=(
   libprotobuf-dev zlib1g-dev liblua5.2-dev libcairo2-dev
   nlohmann-json3-dev libyaml-cpp-dev
   # Tests and benchmarks.
-  libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema parallel
+  libgtest-dev libgmock-dev libbenchmark-dev python3-jsonschema parallel valgrind
 )
 DEVELOPMENT_PACKAGES=(clang-format clang-tidy git python3-numpy python3-matplotlib)
 PYTHON_PACKAGES=(pybind11-dev python3-dev python3-numpy)
