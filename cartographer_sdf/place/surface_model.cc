@@ -99,6 +99,9 @@ std::optional<SurfaceModel> MakeSurfaceModel(const FieldOptions& options,
   if (model.observed_points.empty() || model.walls.empty()) {
     return std::nullopt;
   }
+  // They stay as many; growing has left room for up to twice the number.
+  model.walls.shrink_to_fit();
+  model.observed_points.shrink_to_fit();
   model.area_per_observed_point = std::pow(stride * geometry.resolution, 2);
   Mix(&model.walls);
   Mix(&model.observed_points);
