@@ -201,9 +201,10 @@ class NeighbourhoodVerifier {
   }
 
   [[nodiscard]] bool Overlap(const PairPose& pair) const {
-    return OverlapArea(maps_.references.places->at(pair.reference).surface,
-                       maps_.queries.places->at(pair.query).surface,
-                       pair.T_reference_query) >= options_.min_overlap_area;
+    return OverlapsBy(options_.min_overlap_area,
+                      maps_.references.places->at(pair.reference).surface,
+                      maps_.queries.places->at(pair.query).surface,
+                      pair.T_reference_query);
   }
 
   [[nodiscard]] Neighbourhood Measure(const PairPose& pair) const {
