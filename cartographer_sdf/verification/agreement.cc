@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "cartographer_sdf/place/surface_cell_lookup.h"
 
@@ -176,6 +177,17 @@ void VisitObserved(const SurfaceModel& reference, const SurfaceModel& query,
   }
 }
 
+// Keys are in the order of the tiles.
+constexpr uint32_t kSign = 1u << 31;
+uint64_t KeyOfTile(const int x, const int y) {
+  return static_cast<uint64_t>(static_cast<uint32_t>(x) ^ kSign) << 32 |
+         (static_cast<uint32_t>(y) ^ kSign);
+}
+TileIndex TileOfKey(const uint64_t key) {
+  return {static_cast<int>(static_cast<uint32_t>(key >> 32) ^ kSign),
+          static_cast<int>(static_cast<uint32_t>(key) ^ kSign)};
+}
+
 // That `count` of the first `num_points` observed points stand for [m^2].
 double AreaOfPoints(const SurfaceModel& query, const int count,
                     const size_t num_points) {
@@ -294,22 +306,24 @@ std::set<TileIndex> OverlapTiles(const SurfaceModel& reference,
                                  const double tile_size) {
   const Rigid2 T_frame_query = T_frame_reference * T_reference_query;
   const Eigen::Matrix2d R_frame_query = T_frame_query.RotationMatrix();
-  std::vector<TileIndex> tiles;
-  VisitObserved(reference, query, T_reference_query,
-                NumOverlapPoints(query, kMaxNumOverlapPoints),
-                [&](const Eigen::Vector2d& point, const bool is_observed) {
-                  if (!is_observed) return true;
-                  const Eigen::Vector2d tile =
-                      (R_frame_query * point + T_frame_query.translation()) /
-                      tile_size;
-                  tiles.emplace_back(static_cast<int>(std::floor(tile.x())),
-                                     static_cast<int>(std::floor(tile.y())));
-                  return true;
-                });
+  std::vector<uint64_t> keys;
+  VisitObserved(
+      reference, query, T_reference_query,
+      NumOverlapPoints(query, kMaxNumOverlapPoints),
+      [&](const Eigen::Vector2d& point, const bool is_observed) {
+        if (!is_observed) return true;
+        const Eigen::Vector2d tile =
+            (R_frame_query * point + T_frame_query.translation()) / tile_size;
+        keys.push_back(KeyOfTile(static_cast<int>(std::floor(tile.x())),
+                                 static_cast<int>(std::floor(tile.y()))));
+        return true;
+      });
   // Cheaper than a set that most points are in already.
-  std::sort(tiles.begin(), tiles.end());
-  tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
-  return {tiles.begin(), tiles.end()};
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  std::set<TileIndex> tiles;
+  for (const uint64_t key : keys) tiles.insert(tiles.end(), TileOfKey(key));
+  return tiles;
 }
 
 }  // namespace cartographer_sdf
