@@ -146,6 +146,15 @@ TEST(OptionsTest, ListsWhatDiffersFromTheDefaults) {
   EXPECT_EQ(changed[1].value, "777");
 }
 
+TEST(OptionsTest, PlacesDoNotDependOnTheMemoryOfTheirFields) {
+  PlaceOptions options;
+  const std::string text = FormatPlaceOptions(options, MatchOptions());
+  options.max_field_megabytes = 1.;
+  EXPECT_EQ(FormatPlaceOptions(options, MatchOptions()), text);
+  options.field.padding_meters = 1.;
+  EXPECT_NE(FormatPlaceOptions(options, MatchOptions()), text);
+}
+
 TEST(OptionsTest, UsersOverrideTheShippedFile) {
   testing::TemporaryDirectory directory;
   directory.Write("mine.lua",
