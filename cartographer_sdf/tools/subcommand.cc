@@ -10,6 +10,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/cord.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "cartographer_sdf/tools/command_line.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -132,11 +133,15 @@ const Subcommand* FindSubcommand(const std::vector<Subcommand>& all,
 int FailOnUnknown(const std::vector<Subcommand>& all, const std::string& name) {
   std::vector<std::string> names = {"help", "version", "completion"};
   for (const Subcommand& subcommand : all) names.push_back(subcommand.name);
+  // What stands there may be a flag, which a subcommand must go before.
+  const bool is_flag = absl::StartsWith(name, "-");
+  if (is_flag) names = {"--help", "--version"};
   const std::string suggestion = NameSuggestion(name, "", names);
   return Fail(
       kProgramName,
       UsageError(absl::StrCat(
-          "unknown subcommand '", name, "'",
+          is_flag ? "a subcommand is missing before '" : "unknown subcommand '",
+          name, "'",
           suggestion.empty() ? absl::StrCat("; see ", kProgramName, " --help")
                              : suggestion)));
 }

@@ -33,7 +33,7 @@ class ResultSchemaTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.seen = {}
+        cls.seen, cls.counts = {}, set()
         cls.schema = json.loads(pathlib.Path(SCHEMA).read_text(encoding="utf-8"))
         jsonschema.Draft202012Validator.check_schema(cls.schema)
         cls.validator = jsonschema.Draft202012Validator(cls.schema)
@@ -66,16 +66,18 @@ class ResultSchemaTest(unittest.TestCase):
         self.assertEqual(content["exit_code"], exit_code, arguments)
         self.assertEqual(content["command"]["name"], arguments[0])
         self.seen.setdefault(arguments[0], set()).add(status)
+        self.counts.update(content["counts"])
         return content
 
     def test_all(self):
         a, b, c = (self.file(f"{name}.pbstream") for name in "abc")
         closed, matches = self.file("closed.pbstream"), self.file("matches.csv")
         content = self.check("done", 0, "close_loops", a, "-o", closed, "--picture",
-                             self.file("a.png"), "--report", self.file("report"))
+                             self.file("a.png"), "--report", self.file("report"), "--closures",
+                             self.file("closures.csv"))
         self.assertGreater(content["counts"]["closures"], 0)
         self.assertEqual({output["flag"] for output in content["outputs"]},
-                         {"output", "picture", "report"})
+                         {"output", "picture", "report", "closures"})
         self.check("nothing", 3, "close_loops", closed, "-o", self.file("again.pbstream"),
                    "--fail_on", "nothing")
         self.check("done", 0, "match", a, "-o", matches)
@@ -94,9 +96,11 @@ class ResultSchemaTest(unittest.TestCase):
         self.assertEqual([bool(session["left_out"]) for session in content["sessions"]],
                          [False, False, True])
         self.check("refused", 3, "merge", a, c, "-o", self.file("x.pbstream"))
-        self.check("done", 0, "audit", closed)
+        self.check("done", 0, "audit", closed, "--constraints", self.file("constraints.csv"))
         self.check("nothing", 0, "audit", a)
-        self.check("done", 0, "evaluate", a, "--truth", self.file("a.csv"), "--matches", matches)
+        self.check("done", 0, "evaluate", a, "--truth", self.file("a.csv"), "--matches", matches,
+                   "--csv", self.file("evaluation.csv"), "--labels", self.file("labels.csv"),
+                   "--curves", self.file("curves.csv"))
         self.check("done", 0, "figures", a, "-o", self.file("figures"))
         self.check("done", 0, "falsify", closed, "-o", self.file("false.pbstream"),
                    "--wrong_constraints", self.file("wrong.csv"), "--kinds", "random")
@@ -116,6 +120,7 @@ class ResultSchemaTest(unittest.TestCase):
         self.check("failed", 1, "batch", a, self.file("none.pbstream"), "-o", self.file("batch2"))
         self.check("wrong_usage", 2, "merge", a, "-o", self.file("x.pbstream"))
         self.check_seen()
+        self.check_tables()
 
     def check_seen(self):
         general = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True)
@@ -124,6 +129,22 @@ class ResultSchemaTest(unittest.TestCase):
         self.assertEqual(set(self.seen) - {"falsify"}, set(listed))
         self.assertEqual(set(self.schema["properties"]["command"]["properties"]["name"]["enum"]),
                          set(self.seen) | {""})
+
+    def check_tables(self):
+        """Every column of every table is in the documentation of tables."""
+        document = (pathlib.Path(SCHEMA).parent / "command_line.md").read_text(encoding="utf-8")
+        section = document.split("## Tables and other files")[1]
+        words = set(re.findall(r"\w+", section))
+        prefixes = tuple(re.findall(r"(\w+_)\.\.\.", section))
+        tables = sorted(pathlib.Path(self.folder.name).rglob("*.csv"))
+        self.assertGreater(len(tables), 10)
+        for table in tables:
+            columns = table.read_text(encoding="utf-8").splitlines()[0].split(",")
+            unknown = [column for column in columns
+                       if column not in words and not column.startswith(prefixes)
+                       and not (table.name == "features.csv" and re.fullmatch(r"d\d+", column))
+                       and not (table.name == "summary.csv" and column in self.counts)]
+            self.assertEqual(unknown, [], table.name)
 
     def test_the_schema_can_fail(self):
         content = self.check("done", 0, "info", self.file("a.pbstream"))

@@ -88,7 +88,11 @@ TEST(ProgramTest, RefusesWrongUsage) {
   EXPECT_THAT(Failure({}, 2), HasSubstr("--help"));
   EXPECT_THAT(Failure({"inof"}, 2), HasSubstr("did you mean 'info'?"));
   EXPECT_THAT(Failure({"frobnicate\n"}, 2), HasSubstr("--help"));
-  EXPECT_THAT(Failure({"--input", "x"}, 2), HasSubstr("unknown subcommand"));
+  EXPECT_THAT(Failure({"--input", "x"}, 2),
+              HasSubstr("a subcommand is missing before '--input'; see"));
+  EXPECT_THAT(Failure({"--hlep"}, 2), HasSubstr("did you mean '--help'?"));
+  EXPECT_THAT(Failure({"--verison"}, 2),
+              HasSubstr("did you mean '--version'?"));
   EXPECT_THAT(Failure({"info"}, 2), AllOf(HasSubstr("--input is missing"),
                                           HasSubstr("info A.pbstream")));
   EXPECT_THAT(Failure({"info", "--input="}, 2), HasSubstr("is missing"));
