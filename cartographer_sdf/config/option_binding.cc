@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <variant>
 
@@ -17,6 +16,9 @@
 
 namespace cartographer_sdf {
 namespace {
+
+// So that twice an option, and some more, is an int, too.
+constexpr double kMaxInteger = 1e9;
 
 const char* TypeName(const LuaValue& value) {
   static constexpr const char* kNames[] = {"a table", "a boolean", "a number",
@@ -97,11 +99,14 @@ void OptionReader::Visit(const char* const key, double& option) {
 void OptionReader::Visit(const char* const key, int& option) {
   const double* const value = Find<double>(key, "an integer");
   if (value == nullptr) return;
-  if (*value != std::floor(*value) ||
-      *value < std::numeric_limits<int>::min() ||
-      *value > std::numeric_limits<int>::max()) {
+  if (*value != std::floor(*value)) {
     AddError(PathOf(key),
              absl::StrCat("must be an integer, it is ", FormatNumber(*value)));
+    return;
+  }
+  if (std::abs(*value) > kMaxInteger) {
+    AddError(PathOf(key), absl::StrCat("must lie between -1e9 and 1e9, it is ",
+                                       FormatNumber(*value)));
     return;
   }
   option = static_cast<int>(*value);

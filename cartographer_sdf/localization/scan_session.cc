@@ -105,8 +105,9 @@ std::string Validate(const ScanSessionOptions& options) {
   if (options.max_num_looks < 2 || options.max_num_looks > 1000) {
     return "max_num_looks must lie between 2 and 1000";
   }
-  if (options.num_looks_per_search < 1) {
-    return "num_looks_per_search must be positive";
+  if (options.num_looks_per_search < 1 ||
+      options.num_looks_per_search > 100000) {
+    return "num_looks_per_search must lie between 1 and 100000";
   }
   if (!(options.independent_distance_meters >= 0.05 &&
         options.independent_distance_meters <= 1000.) ||

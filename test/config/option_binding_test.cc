@@ -109,7 +109,7 @@ TEST_F(OptionBindingTest, NamesWrongTypes) {
   EXPECT_EQ(ErrorOf("T.feature.num_bins = 3.5"),
             "T.feature.num_bins must be an integer, it is 3.5");
   EXPECT_EQ(ErrorOf("T.feature.num_bins = 1e10"),
-            "T.feature.num_bins must be an integer, it is 1e+10");
+            "T.feature.num_bins must lie between -1e9 and 1e9, it is 1e+10");
   EXPECT_EQ(ErrorOf("T.enabled = 1"),
             "T.enabled must be true or false, it is a number");
   EXPECT_EQ(ErrorOf("T.method = {}"),

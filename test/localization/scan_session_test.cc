@@ -332,6 +332,11 @@ TEST(ScanSessionOptionsTest, AreValidated) {
   options.max_num_looks = 1;
   EXPECT_NE(Validate(options), "");
   options = {};
+  for (const int number : {0, std::numeric_limits<int>::max()}) {
+    options.num_looks_per_search = number;
+    EXPECT_NE(Validate(options), "");
+  }
+  options = {};
   options.independent_distance_meters = 0.;
   EXPECT_NE(Validate(options), "");
   options = {};
