@@ -7,6 +7,7 @@
 #ifndef PYTHON_BINDINGS_H_
 #define PYTHON_BINDINGS_H_
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "absl/status/statusor.h"
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/pose_graph/host_motion.h"
 #include "pybind11/pybind11.h"
 
 namespace cartographer_sdf {
@@ -35,6 +37,13 @@ T ValueOrThrow(absl::StatusOr<T> value) {
   return *std::move(value);
 }
 
+// What was computed, and what Cartographer would do to the map if it loaded it
+// unfrozen; none where it would not move it, or where there is no map.
+template <typename T>
+struct WithHostMotion : T {
+  std::optional<HostMotion> host_motion;
+};
+
 // 0: as many threads as the machine supports. ValueError for other nonsense.
 Executor ExecutorOf(int threads);
 
@@ -49,7 +58,9 @@ void BindGeometry(pybind11::module_* module);
 void BindOptions(pybind11::module_* module);
 void BindMaps(pybind11::module_* module);
 void BindPlaces(pybind11::module_* module);
+void BindQuality(pybind11::module_* module);
 void BindTasks(pybind11::module_* module);
+void BindLocalization(pybind11::module_* module);
 void BindSessions(pybind11::module_* module);
 void BindScans(pybind11::module_* module);
 

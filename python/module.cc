@@ -152,7 +152,9 @@ PYBIND11_MODULE(_core, module) {
   sdf::BindOptions(&module);
   sdf::BindMaps(&module);
   sdf::BindPlaces(&module);
+  sdf::BindQuality(&module);
   sdf::BindTasks(&module);
+  sdf::BindLocalization(&module);
   sdf::BindSessions(&module);
   sdf::BindScans(&module);
 }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Where a robot stands, by one scan.
+// Where a robot stands or drives, by its scans.
 
 #include <Eigen/Core>
 #include <memory>
@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "cartographer_sdf/apps/map_grid.h"
+#include "cartographer_sdf/apps/robot_scans.h"
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/map_image/ros_map.h"
 #include "cartographer_sdf/recording/scan_file.h"
 #include "pybind11/eigen.h"
@@ -78,6 +80,63 @@ ScanLocalization LocalizeScansIn(const PanoramaMap& map,
                                  const Options& options) {
   if (scans.empty()) throw py::value_error("there is no scan");
   return LocalizeScans(options.scan_localization, map, scans);
+}
+
+std::vector<OdometryScan> ReadDrive(const std::string& path,
+                                    const bool repair) {
+  ScanRecording recording =
+      ValueOrThrow(ReadRobotScans(SourceOf(path, repair)));
+  if (!recording.is_drive) {
+    throw StatusException("the scans of " + path + " have no odometry");
+  }
+  return std::move(recording.scans);
+}
+
+OdometryScan MakeOdometryScan(const double time, const Rigid2& T_odometry_robot,
+                              std::vector<RobotScan> scans) {
+  return {time, T_odometry_robot, std::move(scans)};
+}
+
+void BindDrives(py::module_* const module) {
+  py::class_<OdometryScan>(*module, "OdometryScan")
+      .def(py::init(&MakeOdometryScan), py::arg("time"),
+           py::arg("T_odometry_robot"), py::arg("scans"))
+      .def_readonly("time", &OdometryScan::time)
+      .def_readonly("T_odometry_robot", &OdometryScan::T_odometry_robot)
+      .def_readonly("scans", &OdometryScan::scans);
+  module->def("read_drive", &ReadDrive, py::arg("path"),
+              py::arg("repair") = false,
+              py::call_guard<py::gil_scoped_release>());
+  py::class_<SessionAnswer>(*module, "SessionAnswer")
+      .def_property_readonly("state",
+                             [](const SessionAnswer& answer) {
+                               return ScanSearchStateName(answer.state);
+                             })
+      .def_readonly("T_map_robot", &SessionAnswer::T_map_robot)
+      .def_readonly("localization", &SessionAnswer::localization)
+      .def_readonly("looks", &SessionAnswer::num_looks)
+      .def_readonly("distance_driven", &SessionAnswer::distance_driven)
+      .def_readonly("seconds", &SessionAnswer::seconds)
+      .def_property_readonly("use", [](const SessionAnswer& answer) {
+        return ScanUseName(answer.use);
+      });
+  py::class_<ScanSession>(*module, "ScanSession")
+      .def(py::init([](const PanoramaMap& map, const Options& options) {
+             return std::make_unique<ScanSession>(options.scan_localization,
+                                                  options.scan_session, map);
+           }),
+           py::arg("map"), py::arg("options") = Options(),
+           py::keep_alive<1, 2>())
+      // With the interpreter's lock, as a session is not for several threads.
+      .def(
+          "add",
+          [](ScanSession& session, const OdometryScan& scan) {
+            return session.Add(scan);
+          },
+          py::arg("scan"))
+      .def_property_readonly("answer", [](const ScanSession& session) {
+        return session.answer();
+      });
 }
 
 void BindCandidates(py::module_* const module) {
@@ -154,6 +213,7 @@ void BindScans(py::module_* const module) {
            py::arg("options") = Options(), py::arg("repair") = false);
   BindCandidates(module);
   BindScanLocalization(module);
+  BindDrives(module);
 }
 
 }  // namespace cartographer_sdf

@@ -26,6 +26,9 @@ namespace py = pybind11;
 
 namespace {
 
+using MergedMap = WithHostMotion<MergingResult>;
+using AuditedMap = WithHostMotion<Audit>;
+
 // A map by its path, or what was made of it.
 using MapArgument = std::variant<std::string, std::shared_ptr<DescribedMap>>;
 
@@ -122,11 +125,11 @@ Localization Relocalize(const MapArgument& map_argument,
   return LocalizeIn(options.localization, closing, *map, query.map, executor);
 }
 
-MergingResult Merge(const std::vector<std::string>& paths,
-                    const std::optional<std::string>& output,
-                    const Options& options,
-                    const std::set<int>& frozen_trajectories, const int threads,
-                    const bool repair, const bool drop_odometry) {
+MergedMap Merge(const std::vector<std::string>& paths,
+                const std::optional<std::string>& output,
+                const Options& options,
+                const std::set<int>& frozen_trajectories, const int threads,
+                const bool repair, const bool drop_odometry) {
   CheckMethod(options, "merge");
   if (paths.size() < 2) throw py::value_error("merge needs two maps at least");
   if (output) CheckOutput(paths, *output);
@@ -134,55 +137,64 @@ MergingResult Merge(const std::vector<std::string>& paths,
   for (const std::string& path : paths) {
     sources.push_back(SourceOf(path, repair, drop_odometry));
   }
-  MergingResult result = ValueOrThrow(MergeSessions(
-      options.fold_check, options.localization, options.scan_places,
-      options.loop_closing, sources, frozen_trajectories, ExecutorOf(threads)));
-  if (output && result.refusal.empty()) {
+  MergedMap result{ValueOrThrow(MergeSessions(
+                       options.fold_check, options.localization,
+                       options.scan_places, options.loop_closing, sources,
+                       frozen_trajectories, ExecutorOf(threads))),
+                   {}};
+  if (!result.refusal.empty()) return result;
+  if (output) {
     ThrowUnlessOk(
         WriteJoinedMap(result.parts, result.closed.pose_graph, *output));
   }
+  const OptimizationOptions& weights =
+      options.loop_closing.closing.optimization;
+  result.host_motion =
+      PredictHostMotion(weights, weights, result.closed.pose_graph);
   return result;
 }
 
-Audit AuditOf(const std::string& path, const std::optional<std::string>& output,
-              const Options& options, const std::set<int>& frozen_trajectories,
-              const int threads, const bool repair, const bool drop_odometry) {
+// The constraints of those numbers; ids are not checked here.
+std::vector<ListedConstraint> ListOf(const std::vector<size_t>& numbers,
+                                     const std::string& path,
+                                     const MapSource& source) {
+  const MapState state = ValueOrThrow(ReadMap(source, {}));
+  std::vector<ListedConstraint> listed;
+  for (const size_t number : numbers) {
+    if (number >= state.pose_graph.constraints.size()) {
+      throw py::value_error(path + " has no constraint " +
+                            std::to_string(number));
+    }
+    const Constraint& constraint = state.pose_graph.constraints[number];
+    listed.push_back({number, constraint.submap, constraint.node});
+  }
+  return listed;
+}
+
+AuditedMap AuditOf(const std::string& path,
+                   const std::optional<std::string>& output,
+                   const Options& options,
+                   const std::set<int>& frozen_trajectories, const int threads,
+                   const bool repair, const bool drop_odometry,
+                   const std::optional<std::vector<size_t>>& drop) {
   CheckMethod(options, "audit");
   if (output) CheckOutput({path}, *output);
   const MapSource source = SourceOf(path, repair, drop_odometry);
-  Audit audit =
-      ValueOrThrow(AuditMap(options.loop_closing, options.audit, source,
-                            frozen_trajectories, ExecutorOf(threads)));
-  if (output && audit.refusal.empty()) {
-    ThrowUnlessOk(WriteMap(source, *output, audit.pose_graph));
-  }
+  std::optional<std::vector<ListedConstraint>> listed;
+  if (drop) listed = ListOf(*drop, path, source);
+  AuditedMap audit{ValueOrThrow(AuditMap(options.loop_closing, options.audit,
+                                         source, frozen_trajectories,
+                                         ExecutorOf(threads), {}, listed)),
+                   {}};
+  if (!audit.refusal.empty()) return audit;
+  if (output) ThrowUnlessOk(WriteMap(source, *output, audit.pose_graph));
+  audit.host_motion =
+      PredictHostMotion(options.loop_closing.closing.optimization,
+                        audit.optimization, audit.pose_graph);
   return audit;
 }
 
-void BindLocalization(py::module_* const module) {
-  py::class_<Placement>(*module, "Placement")
-      .def_readonly("T_map_query", &Placement::T_map_query)
-      .def_readonly("score", &Placement::score)
-      .def_readonly("is_rival", &Placement::is_rival)
-      .def_readonly("votes", &Placement::votes);
-  py::class_<Localization>(*module, "Localization")
-      .def_property_readonly("localized",
-                             [](const Localization& result) {
-                               return result.T_map_query.has_value();
-                             })
-      .def_property_readonly("verdict",
-                             [](const Localization& result) {
-                               return LocalizationVerdictName(result.verdict);
-                             })
-      .def_readonly("reason", &Localization::reason)
-      .def_readonly("T_map_query", &Localization::T_map_query)
-      .def_readonly("score", &Localization::score)
-      .def_readonly("runner_up_score", &Localization::runner_up_score)
-      .def_readonly("matches", &Localization::matches)
-      .def_readonly("placements", &Localization::placements)
-      .def_readonly("agreeing", &Localization::num_agreeing)
-      .def_readonly("contradicting", &Localization::num_contradicting)
-      .def_readonly("stage_seconds", &Localization::stage_seconds);
+void BindRelocalization(py::module_* const module) {
   module->def("relocalize", &Relocalize, py::arg("map"), py::arg("query"),
               py::arg("output") = py::none(),
               py::arg("first_seconds") = py::none(),
@@ -202,23 +214,24 @@ void BindMerge(py::module_* const module) {
       .def_readonly("first", &SessionLink::first)
       .def_readonly("second", &SessionLink::second)
       .def_readonly("localization", &SessionLink::localization);
-  py::class_<MergingResult>(*module, "MergedMap")
+  py::class_<MergedMap>(*module, "MergedMap")
       .def_property_readonly(
           "merged",
-          [](const MergingResult& result) { return result.refusal.empty(); })
-      .def_readonly("reason", &MergingResult::refusal)
-      .def_readonly("sessions", &MergingResult::sessions)
-      .def_readonly("links", &MergingResult::links)
+          [](const MergedMap& result) { return result.refusal.empty(); })
+      .def_readonly("reason", &MergedMap::refusal)
+      .def_readonly("sessions", &MergedMap::sessions)
+      .def_readonly("links", &MergedMap::links)
       .def_property_readonly(
           "closures",
-          [](const MergingResult& result) { return result.closed.closures; })
+          [](const MergedMap& result) { return result.closed.closures; })
       .def_property_readonly("submaps",
-                             [](const MergingResult& result) {
+                             [](const MergedMap& result) {
                                return result.closed.pose_graph.submap_poses;
                              })
-      .def_readonly("overlapping_pairs", &MergingResult::num_overlapping)
-      .def_readonly("contradictions", &MergingResult::contradictions)
-      .def_readonly("stage_seconds", &MergingResult::stage_seconds);
+      .def_readonly("overlapping_pairs", &MergedMap::num_overlapping)
+      .def_readonly("contradictions", &MergedMap::contradictions)
+      .def_readonly("host_motion", &MergedMap::host_motion)
+      .def_readonly("stage_seconds", &MergedMap::stage_seconds);
   module->def("merge", &Merge, py::arg("paths"), py::arg("output") = py::none(),
               py::arg("options") = Options(),
               py::arg("frozen_trajectories") = std::set<int>(),
@@ -231,7 +244,7 @@ std::pair<double, double> PairOf(const ConstraintError& error) {
   return {error.translation, error.rotation};
 }
 
-void BindAudit(py::module_* const module) {
+void BindAuditedConstraint(py::module_* const module) {
   py::class_<AuditedConstraint>(*module, "AuditedConstraint")
       .def_readonly("index", &AuditedConstraint::constraint)
       .def_property_readonly("verdict",
@@ -250,28 +263,40 @@ void BindAudit(py::module_* const module) {
                              [](const AuditedConstraint& constraint) {
                                return PairOf(constraint.error_after);
                              });
-  py::class_<Audit>(*module, "Audit")
-      .def_readonly("constraints", &Audit::constraints)
-      .def_readonly("doubtful", &Audit::num_doubtful)
-      .def_readonly("refusal", &Audit::refusal)
-      .def_readonly("leaves_out_odometry", &Audit::leaves_out_odometry)
+}
+
+void BindAudit(py::module_* const module) {
+  py::class_<AuditedMap>(*module, "Audit")
+      .def_readonly("constraints", &AuditedMap::constraints)
+      .def_readonly("doubtful", &AuditedMap::num_doubtful)
+      .def_property_readonly("dropped",
+                             [](const AuditedMap& audit) {
+                               return std::vector<size_t>(audit.dropped.begin(),
+                                                          audit.dropped.end());
+                             })
+      .def_readonly("walls_before", &AuditedMap::quality_before)
+      .def_readonly("walls_after", &AuditedMap::quality_after)
+      .def_readonly("host_motion", &AuditedMap::host_motion)
+      .def_readonly("refusal", &AuditedMap::refusal)
+      .def_readonly("leaves_out_odometry", &AuditedMap::leaves_out_odometry)
       .def_property_readonly(
           "submaps",
-          [](const Audit& audit) { return audit.pose_graph.submap_poses; })
-      .def_readonly("stage_seconds", &Audit::stage_seconds);
+          [](const AuditedMap& audit) { return audit.pose_graph.submap_poses; })
+      .def_readonly("stage_seconds", &AuditedMap::stage_seconds);
   module->def("audit", &AuditOf, py::arg("path"),
               py::arg("output") = py::none(), py::arg("options") = Options(),
               py::arg("frozen_trajectories") = std::set<int>(),
               py::arg("threads") = 0, py::arg("repair") = false,
-              py::arg("drop_odometry") = false,
+              py::arg("drop_odometry") = false, py::arg("drop") = py::none(),
               py::call_guard<py::gil_scoped_release>());
 }
 
 }  // namespace
 
 void BindSessions(py::module_* const module) {
-  BindLocalization(module);
+  BindRelocalization(module);
   BindMerge(module);
+  BindAuditedConstraint(module);
   BindAudit(module);
 }
 

@@ -28,6 +28,8 @@ namespace py = pybind11;
 
 namespace {
 
+using ClosedMap = WithHostMotion<LoopClosingResult>;
+
 std::shared_ptr<DescribedMap> Describe(const std::string& path,
                                        const Options& options,
                                        const int threads, const bool repair) {
@@ -50,21 +52,26 @@ std::vector<Match> Recognize(const DescribedMap& map,
                                 &clock);
 }
 
-LoopClosingResult CloseLoopsOf(const std::string& path,
-                               const std::optional<std::string>& output,
-                               const Options& options,
-                               const std::set<int>& frozen_trajectories,
-                               const int threads, const bool repair,
-                               const bool drop_odometry) {
+ClosedMap CloseLoopsOf(const std::string& path,
+                       const std::optional<std::string>& output,
+                       const Options& options,
+                       const std::set<int>& frozen_trajectories,
+                       const int threads, const bool repair,
+                       const bool drop_odometry) {
   if (options.loop_closing.recognition.match.method != Method::kSdf) {
     throw py::value_error("close_loops needs match.method = \"sdf\"");
   }
   if (output) CheckOutput({path}, *output);
   const MapSource source = SourceOf(path, repair, drop_odometry);
-  LoopClosingResult result = ValueOrThrow(CloseLoops(
-      options.loop_closing, source, frozen_trajectories, ExecutorOf(threads)));
+  ClosedMap result{
+      ValueOrThrow(CloseLoops(options.loop_closing, source, frozen_trajectories,
+                              ExecutorOf(threads))),
+      {}};
   if (output)
     ThrowUnlessOk(WriteMap(source, *output, result.closed.pose_graph));
+  result.host_motion =
+      PredictHostMotion(options.loop_closing.closing.optimization,
+                        result.optimization, result.closed.pose_graph);
   return result;
 }
 
@@ -170,25 +177,26 @@ void BindClosedMap(py::module_* const module) {
       .def_property_readonly("status", [](const Closure& closure) {
         return ClosureStatusName(closure.status);
       });
-  py::class_<LoopClosingResult>(*module, "ClosedMap")
-      .def_property_readonly("closures",
-                             [](const LoopClosingResult& result) {
-                               return result.closed.closures;
-                             })
+  py::class_<ClosedMap>(*module, "ClosedMap")
+      .def_property_readonly(
+          "closures",
+          [](const ClosedMap& result) { return result.closed.closures; })
       .def_property_readonly("submaps",
-                             [](const LoopClosingResult& result) {
+                             [](const ClosedMap& result) {
                                return result.closed.pose_graph.submap_poses;
                              })
+      .def_readonly("refused", &ClosedMap::refused)
+      .def_readonly("host_motion", &ClosedMap::host_motion)
       .def_property_readonly(
           "torn_submaps",
-          [](const LoopClosingResult& result) {
+          [](const ClosedMap& result) {
             std::vector<SubmapId> ids;
             for (const auto& [id, tear] : result.closed.torn_submaps) {
               ids.push_back(id);
             }
             return ids;
           })
-      .def_readonly("stage_seconds", &LoopClosingResult::stage_seconds);
+      .def_readonly("stage_seconds", &ClosedMap::stage_seconds);
   module->def("close_loops", &CloseLoopsOf, py::arg("path"),
               py::arg("output") = py::none(), py::arg("options") = Options(),
               py::arg("frozen_trajectories") = std::set<int>(),

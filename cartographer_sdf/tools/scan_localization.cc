@@ -12,18 +12,14 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/apps/map_grid.h"
+#include "cartographer_sdf/apps/robot_scans.h"
 #include "cartographer_sdf/localization/panorama_file.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
-#include "cartographer_sdf/localization/scan_places.h"
 #include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/map_image/ros_map.h"
-#include "cartographer_sdf/place_store/described_map.h"
-#include "cartographer_sdf/recording/carmen_log.h"
-#include "cartographer_sdf/recording/recording.h"
 #include "cartographer_sdf/recording/scan_file.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/reports.h"
@@ -116,33 +112,11 @@ struct ScanQuery {
   ScanRecording recording;
 };
 
-absl::StatusOr<ScanRecording> ReadDriveOfMap(const std::string& path) {
-  const absl::StatusOr<DescribedMap> map =
-      ReadMapWithScans(SourceOfFlags(path));
-  if (!map.ok()) return map.status();
-  if (map->point_clouds.empty()) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(path, " has no node with a scan"));
-  }
-  return ScanRecording{
-      true, OdometryScansOf(*map, map->point_clouds.begin()->first.trajectory)};
-}
-
-absl::StatusOr<ScanRecording> ReadQueryRecording(const std::string& path) {
-  if (absl::EndsWith(path, ".pbstream")) return ReadDriveOfMap(path);
-  for (const char* const suffix : {".log", ".log.gz", ".clf", ".clf.gz"}) {
-    if (!absl::EndsWith(path, suffix)) continue;
-    const absl::StatusOr<Recording> log = ReadCarmenLog(path, {});
-    if (!log.ok()) return log.status();
-    return ScanRecording{true, OdometryScansOf(*log)};
-  }
-  return ReadScanRecording(path);
-}
-
 absl::StatusOr<std::vector<ScanQuery>> ReadScanQueries() {
   std::vector<ScanQuery> queries;
   for (const std::string& path : SplitPaths(FLAGS_scan)) {
-    absl::StatusOr<ScanRecording> recording = ReadQueryRecording(path);
+    absl::StatusOr<ScanRecording> recording =
+        ReadRobotScans(SourceOfFlags(path));
     if (!recording.ok()) return recording.status();
     if (FLAGS_first_seconds > 0. && !recording->is_drive) {
       return UsageError(

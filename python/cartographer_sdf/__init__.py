@@ -13,20 +13,23 @@ import pathlib
 import tempfile
 
 from ._core import (
-    Audit, AuditedConstraint, Candidate, ClosedMap, Closure, Constraint, DescribedMap, Error, Field,
-    Grid, Index, Localization, Map, Match, MergedMap, MergedSession, Options, PanoramaMap, Place,
-    Placement, Pose, Scan, ScanCandidate, ScanLocalization, SessionLink, SubmapId, audit,
-    close_loops, describe, describe_map, distance_field, localize_scans, match, merge, node_errors,
-    read_map, read_scans, recognize, relocalize, score_matches, __commit__, __version__,
-    _load_options)
+    Audit, AuditedConstraint, Candidate, Change, ClosedMap, Closure, Constraint, DescribedMap,
+    Error, Field, Grid, HostMotion, Index, Jump, Localization, Map, MapExamination, Match,
+    MergedMap, MergedSession, OdometryScan, Options, PanoramaMap, Place, Placement, Pose, QueryPart,
+    Scan, ScanCandidate, ScanLocalization, ScanSession, SessionAnswer, SessionLink, SubmapId, Walls,
+    audit, close_loops, describe, describe_map, distance_field, examine_map, localize_scans, match,
+    merge, node_errors, read_drive, read_map, read_scans, recognize, relocalize, score_matches,
+    __commit__, __version__, _load_options)
 
 __all__ = [
-    "Audit", "AuditedConstraint", "Candidate", "ClosedMap", "Closure", "Constraint", "DescribedMap",
-    "Error", "Field", "Grid", "Index", "Localization", "Map", "Match", "MergedMap", "MergedSession",
-    "Options", "PanoramaMap", "Place", "Placement", "Pose", "Scan", "ScanCandidate",
-    "ScanLocalization", "SessionLink", "SubmapId", "audit", "close_loops", "describe",
-    "describe_map", "distance_field", "load_options", "localize_scans", "match", "merge",
-    "node_errors", "read_map", "read_scans", "recognize", "relocalize", "score_matches"]
+    "Audit", "AuditedConstraint", "Candidate", "Change", "ClosedMap", "Closure", "Constraint",
+    "DescribedMap", "Error", "Field", "Grid", "HostMotion", "Index", "Jump", "Localization", "Map",
+    "MapExamination", "Match", "MergedMap", "MergedSession", "OdometryScan", "Options",
+    "PanoramaMap", "Place", "Placement", "Pose", "QueryPart", "Scan", "ScanCandidate",
+    "ScanLocalization", "ScanSession", "SessionAnswer", "SessionLink", "SubmapId", "Walls", "audit",
+    "close_loops", "describe", "describe_map", "distance_field", "examine_map", "load_options",
+    "localize_scans", "match", "merge", "node_errors", "read_drive", "read_map", "read_scans",
+    "recognize", "relocalize", "score_matches"]
 
 
 def _lua(value):

@@ -246,6 +246,76 @@ def recognize(map: DescribedMap, query: Optional[DescribedMap] = None, options: 
     those of the map, verified with their neighbours. Accepted or not. The
     result does not depend on the number of threads; 0: all cores."""
 
+class Walls:
+    """How well the walls of submaps agree that lie over each other. None where
+    no pair was compared."""
+
+    @property
+    def pairs(self) -> int:
+        """That were compared."""
+    @property
+    def hit_ratio(self) -> Optional[float]:
+        """Fraction of wall on walls of the other submap."""
+    @property
+    def contradiction_ratio(self) -> Optional[float]:
+        """Fraction of wall in free space of the other."""
+    @property
+    def wall_distance(self) -> Optional[float]:
+        """Root mean square distance of walls that meet [m]."""
+
+class MapExamination:
+    """How good a map is, without a truth."""
+
+    @property
+    def submaps(self) -> int: ...
+    @property
+    def places(self) -> int:
+        """Submaps that show walls."""
+    @property
+    def is_closed(self) -> bool:
+        """Whether the map has constraints that close loops."""
+    @property
+    def walls(self) -> Walls:
+        """Where submaps lie over each other in the map."""
+    @property
+    def walls_along_trajectories(self) -> Walls:
+        """Of submaps two indices apart, as local SLAM placed them: the noise of the
+        map itself."""
+    @property
+    def broken_links(self) -> List[SubmapId]:
+        """The first submap of each link of local SLAM that walls contradict."""
+    @property
+    def torn_submaps(self) -> List[SubmapId]: ...
+    @property
+    def self_similar(self) -> int:
+        """Places that would be taken for themselves in another pose."""
+    @property
+    def mean_area(self) -> float:
+        """That a place shows [m^2]."""
+    @property
+    def advice(self) -> List[str]:
+        """Sentences, the gravest first: what is wrong, and what improves the map."""
+    @property
+    def stage_seconds(self) -> List[Tuple[str, float]]: ...
+
+def examine_map(path: str, options: Options = ..., threads: int = 0,
+                repair: bool = False) -> MapExamination:
+    """As info --quality."""
+
+class HostMotion:
+    """What Cartographer would do to a map that it loads unfrozen: its weights of
+    odometry differ from those that the map was optimised with."""
+
+    @property
+    def max_translation(self) -> float:
+        """The largest motion of a node [m]."""
+    @property
+    def host_weights(self) -> Tuple[float, float]:
+        """Of the odometry's translation and rotation, in `options`."""
+    @property
+    def map_weights(self) -> Tuple[float, float]:
+        """Where trajectories have weights of their own, the smallest."""
+
 class Closure:
     @property
     def match(self) -> Match: ...
@@ -260,7 +330,13 @@ class ClosedMap:
     def submaps(self) -> Dict[SubmapId, Pose]:
         """T_map_submap after the optimisation."""
     @property
+    def refused(self) -> List[Match]:
+        """What verification did not accept."""
+    @property
     def torn_submaps(self) -> List[SubmapId]: ...
+    @property
+    def host_motion(self) -> Optional[HostMotion]:
+        """None where Cartographer would not move the map."""
     @property
     def stage_seconds(self) -> List[Tuple[str, float]]: ...
 
@@ -298,6 +374,17 @@ class Audit:
     def doubtful(self) -> int:
         """How many are."""
     @property
+    def dropped(self) -> List[int]:
+        """Numbers of the constraints that the audited map lacks: the doubtful ones,
+        or those that were to be dropped."""
+    @property
+    def walls_before(self) -> Walls: ...
+    @property
+    def walls_after(self) -> Walls: ...
+    @property
+    def host_motion(self) -> Optional[HostMotion]:
+        """None where Cartographer would not move the map, or with a refusal."""
+    @property
     def refusal(self) -> str:
         """Why the map without them must not replace this one; empty otherwise."""
     @property
@@ -311,9 +398,11 @@ class Audit:
 
 def audit(path: str, output: Optional[str] = None, options: Options = ...,
           frozen_trajectories: Set[int] = ..., threads: int = 0, repair: bool = False,
-          drop_odometry: bool = False) -> Audit:
+          drop_odometry: bool = False, drop: Optional[List[int]] = None) -> Audit:
     """As the subcommand audit; writes the map without the doubtful constraints
-    to `output`, if given and if there is no `refusal`."""
+    to `output`, if given and if there is no `refusal`. `drop` numbers the
+    constraints to leave out in their place, as in Map.constraints; ValueError
+    if the map has no such constraint."""
 
 # --- Several maps. ---
 
@@ -332,6 +421,45 @@ class Placement:
     def votes(self) -> List[int]:
         """Indices in Localization.matches."""
 
+class QueryPart:
+    """A part of a query that lies in the map at a pose of its own."""
+
+    @property
+    def placement(self) -> Placement: ...
+    @property
+    def first(self) -> SubmapId:
+        """Its first and last place; places between them may belong to other
+        parts."""
+    @property
+    def last(self) -> SubmapId: ...
+
+class Jump:
+    """A robot that was carried, between two parts of one trajectory."""
+
+    @property
+    def before(self) -> SubmapId:
+        """The last place of the first part."""
+    @property
+    def after(self) -> SubmapId:
+        """The first place of the second part."""
+    @property
+    def distance(self) -> float:
+        """Of `after`, from where the first part puts it to where the second does
+        [m]."""
+
+class Change:
+    """Walls of one map in the free space of the other."""
+
+    @property
+    def kind(self) -> str:
+        """"appeared": the query has it; "vanished": the map has it."""
+    @property
+    def box(self) -> Tuple[float, float, float, float]:
+        """x_min, y_min, x_max, y_max in the map frame [m]."""
+    @property
+    def wall_area(self) -> float:
+        """Of its outline [m^2]."""
+
 class Localization:
     """A certain pose, or a refusal."""
 
@@ -348,6 +476,11 @@ class Localization:
     def T_map_query(self) -> Optional[Pose]:
         """The query's map frame in the map frame; None unless localized."""
     @property
+    def probability(self) -> Optional[float]:
+        """Of the best placement, with the runner-up as its alternative."""
+    @property
+    def runner_up_probability(self) -> Optional[float]: ...
+    @property
     def score(self) -> Optional[float]:
         """Log-odds of the best placement."""
     @property
@@ -360,9 +493,32 @@ class Localization:
     def placements(self) -> List[Placement]:
         """Best first, whether localized or not."""
     @property
-    def agreeing(self) -> int: ...
+    def agreeing(self) -> int:
+        """Votes for the best placement."""
     @property
-    def contradicting(self) -> int: ...
+    def contradicting(self) -> int:
+        """Votes that it excludes, and `contradictions`."""
+    @property
+    def contradictions(self) -> List[Match]:
+        """Pairs that it makes overlap, and that contradict each other there."""
+    @property
+    def compared(self) -> int:
+        """Pairs that it makes overlap; 0 if it was not confirmed."""
+    @property
+    def crossed(self) -> int:
+        """Of these, pairs where a long wall crosses the other's free space."""
+    @property
+    def parts(self) -> List[QueryPart]:
+        """If localized: one, whose pose is T_map_query, unless the query drifted or
+        jumped."""
+    @property
+    def jumps(self) -> List[Jump]: ...
+    @property
+    def changes(self) -> List[Change]:
+        """Since the map was made, if localized; the largest first."""
+    @property
+    def changed_area(self) -> Optional[float]:
+        """Of the boxes together [m^2]; None unless localized."""
     @property
     def stage_seconds(self) -> List[Tuple[str, float]]: ...
 
@@ -426,6 +582,9 @@ class MergedMap:
     def contradictions(self) -> List[Match]:
         """Overlapping pairs that contradict each other."""
     @property
+    def host_motion(self) -> Optional[HostMotion]:
+        """None where Cartographer would not move the map, or if not merged."""
+    @property
     def stage_seconds(self) -> List[Tuple[str, float]]: ...
 
 def merge(paths: List[str], output: Optional[str] = None, options: Options = ...,
@@ -434,7 +593,7 @@ def merge(paths: List[str], output: Optional[str] = None, options: Options = ...
     """As the subcommand merge; writes the map to `output`, if given and if
     `merged`: a refusal is an answer."""
 
-# --- A robot that stands still. ---
+# --- A robot, by its scans. ---
 
 class Scan:
     """One scan of a planar sensor of a robot."""
@@ -507,6 +666,58 @@ class ScanLocalization:
 
 def localize_scans(map: PanoramaMap, scans: List[Scan], options: Options = ...) -> ScanLocalization:
     """Of scans from one place, as relocalize --scan."""
+
+class OdometryScan:
+    """What the sensors of a robot see at one time."""
+
+    def __init__(self, time: float, T_odometry_robot: Pose, scans: List[Scan]) -> None:
+        """`time` [s] may have any origin, `T_odometry_robot` any drift."""
+    @property
+    def time(self) -> float: ...
+    @property
+    def T_odometry_robot(self) -> Pose: ...
+    @property
+    def scans(self) -> List[Scan]: ...
+
+def read_drive(path: str, repair: bool = False) -> List[OdometryScan]:
+    """Of JSON with odometry, a log of CARMEN (.log, .log.gz, .clf, .clf.gz), or the
+    first trajectory of a .pbstream. Raises Error if there is no odometry."""
+
+class SessionAnswer:
+    @property
+    def state(self) -> str:
+        """"searching", "located", or "lost": located before, and searched for
+        again."""
+    @property
+    def T_map_robot(self) -> Optional[Pose]:
+        """At the latest scan; None unless located."""
+    @property
+    def localization(self) -> ScanLocalization:
+        """What the latest scans say, at the latest one."""
+    @property
+    def looks(self) -> int:
+        """Scans that were compared with the map since the search began."""
+    @property
+    def distance_driven(self) -> float:
+        """Since the search began [m]."""
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def use(self) -> str:
+        """What became of the scan that was added: "compared", "not_moved",
+        "too_few_echoes", "time_not_later", "broken_odometry",
+        "odometry_jumped", "carried_away"."""
+
+class ScanSession:
+    """Finds a robot that turns or drives: the answer comes as soon as it is
+    certain, and is given up where scans contradict it."""
+
+    def __init__(self, map: PanoramaMap, options: Options = ...) -> None: ...
+    def add(self, scan: OdometryScan) -> SessionAnswer:
+        """The next one. Any scan is taken; `use` says what became of it."""
+    @property
+    def answer(self) -> SessionAnswer:
+        """After the latest scan."""
 
 # --- Against the truth. ---
 

@@ -182,6 +182,25 @@ class MapTest(unittest.TestCase):
     def assert_is_pose(self, pose, members):
         self.assertEqual(tuple(pose), (members["x"], members["y"], members["yaw"]))
 
+    def assert_is_answer(self, found, members):
+        """As a pair of `merge` or an answer of `relocalize` in --result."""
+        for name in ("verdict", "reason", "probability", "runner_up_probability", "score",
+                     "runner_up_score", "agreeing", "contradicting", "compared", "crossed",
+                     "changed_area"):
+            self.assertEqual(getattr(found, name), members[name], name)
+        self.assertEqual(len(found.contradictions) > 0, found.contradicting > 0)
+        self.assertEqual(len(found.parts), len(members["parts"]))
+        for part, expected in zip(found.parts, members["parts"]):
+            self.assertEqual(part.first, tuple(expected["first"].values()))
+            self.assertEqual(part.last, tuple(expected["last"].values()))
+            self.assert_is_pose(part.placement.T_map_query, expected["T_map_query"])
+            self.assertEqual(len(part.placement.votes), expected["matches"])
+        self.assertEqual([(tuple(j.before), tuple(j.after), j.distance) for j in found.jumps],
+                         [(tuple(j["before"].values()), tuple(j["after"].values()), j["distance"])
+                          for j in members["jumps"]])
+        self.assertEqual([(c.kind, *c.box, c.wall_area) for c in found.changes],
+                         [tuple(c.values()) for c in members["changes"]])
+
     def test_relocalizes_as_the_program_does(self):
         a, b = self.file("a.pbstream"), self.file("b.pbstream")
         found = sdf.relocalize(a, b, threads=2)
@@ -189,7 +208,9 @@ class MapTest(unittest.TestCase):
         self.assertTrue(found.localized)
         self.assertEqual((found.verdict, found.reason), ("localized", by_program["reason"]))
         self.assert_is_pose(found.T_map_query, by_program["T_map_query"])
-        self.assertEqual(found.agreeing, by_program["agreeing"])
+        self.assert_is_answer(found, by_program)
+        self.assertGreater(found.probability, 0.99)
+        self.assert_is_pose(found.parts[0].placement.T_map_query, by_program["T_map_query"])
         self.assertEqual(len(found.placements[0].votes), len(by_program["closures"]))
         self.assertTrue(all(0 <= v < len(found.matches) for v in found.placements[0].votes))
         described = sdf.describe_map(a)
@@ -210,6 +231,104 @@ class MapTest(unittest.TestCase):
                 sdf.relocalize(a, b, **arguments)
         with self.assertRaises(ValueError):
             sdf.relocalize(described, b, self.file("none.pbstream"))
+
+    def test_names_what_has_changed(self):
+        """Rooms of the same plan, without furniture and with it."""
+        maps = []
+        for density in ("0", "0.14"):
+            maps.append(self.file("furniture_%s.pbstream" % density))
+            subprocess.run([PROGRAM, "simulate", "--output", maps[-1], "--truth",
+                            self.file("t.csv"), "--length", "120", "--plan_width", "30",
+                            "--plan_height", "26", "--plan_furniture", density],
+                           check=True, capture_output=True)
+        found = sdf.relocalize(*maps)
+        self.assert_is_answer(found, self.result_of_program("relocalize", *maps))
+        self.assertTrue(found.localized)
+        kinds = [change.kind for change in found.changes]
+        self.assertGreater(kinds.count("appeared"), 2 * kinds.count("vanished"))
+        for change in found.changes:
+            x_min, y_min, x_max, y_max = change.box
+            self.assertLess(x_min, x_max)
+            self.assertLess(y_min, y_max)
+        self.assertGreater(found.changed_area, 0)
+
+    def write_carried_drive(self, path):
+        """A drive in the map, from whose middle on the robot stands where it was at
+        the start: scans of a second drive, as if odometry had noticed nothing."""
+        drive = sdf.read_drive(self.file("a.pbstream"))
+        half = len(drive) // 2
+        jumped = drive[:half] + [
+            sdf.OdometryScan(scan.time + drive[half].time - drive[0].time,
+                             drive[half - 1].T_odometry_robot @
+                             drive[0].T_odometry_robot.inverse() @ scan.T_odometry_robot,
+                             scan.scans) for scan in drive[:half]]
+        scans = [{"time": scan.time,
+                  "odometry": dict(zip(("x", "y", "yaw"), scan.T_odometry_robot)),
+                  "points": part.returns.tolist()} for scan in jumped for part in scan.scans]
+        pathlib.Path(path).write_text(json.dumps(scans))
+
+    def test_follows_a_drive_as_the_program_does(self):
+        path, drive_path = self.file("driven.pbstream"), self.file("drive.json")
+        sdf.close_loops(self.file("a.pbstream"), path)
+        self.write_carried_drive(drive_path)
+        by_program = self.result_of_program("relocalize", path, "--scan", drive_path)["scans"][0]
+        session = sdf.ScanSession(sdf.PanoramaMap(path))
+        self.assertEqual(session.answer.state, "searching")
+        answers = [session.add(scan) for scan in sdf.read_drive(drive_path)]
+        answer, uses = answers[-1], [answer.use for answer in answers]
+        self.assertEqual(answer.state, by_program["state"])
+        self.assertEqual((answer.looks, answer.distance_driven, answer.seconds),
+                         (by_program["looks"], by_program["meters"], by_program["seconds"]))
+        self.assertEqual(answer.state, "located")
+        self.assertLessEqual({"compared", "not_moved", "carried_away"}, set(uses))
+        # Where it was as it was carried: both halves are the same scans.
+        before = answers[len(answers) // 2 - 1].T_map_robot
+        self.assertLess(math.dist(tuple(before), tuple(answer.T_map_robot)), 0.2)
+        self.assert_is_pose(answer.T_map_robot, by_program["T_map_robot"])
+        self.assertEqual(answer.localization.reason, by_program["reason"])
+        # Any scan is taken.
+        self.assertEqual(session.add(sdf.OdometryScan(-1, sdf.Pose(), [])).use, "time_not_later")
+        with self.assertRaisesRegex(sdf.Error, "no odometry"):
+            still = self.file("still.json")
+            pathlib.Path(still).write_text(json.dumps({"points": [[1, 2]]}))
+            sdf.read_drive(still)
+
+    def test_examines_as_info_does(self):
+        path = self.file("a.pbstream")
+        examined = sdf.examine_map(path, threads=1)
+        by_program = self.result_of_program("info", path, "--quality")
+        quality = by_program["quality"]
+        for walls, members in ((examined.walls, quality["walls"]),
+                               (examined.walls_along_trajectories,
+                                quality["walls_along_trajectories"])):
+            for name, value in members.items():
+                self.assertEqual(getattr(walls, name), value, name)
+        self.assertGreater(examined.walls.pairs, 0)
+        self.assertEqual([tuple(id) for id in examined.broken_links],
+                         [tuple(id.values()) for id in quality["broken_links"]])
+        self.assertEqual([tuple(id) for id in examined.torn_submaps],
+                         [tuple(id.values()) for id in by_program["torn_submaps"]])
+        self.assertEqual((examined.self_similar, examined.places, examined.mean_area),
+                         (quality["self_similar"], quality["places"], quality["mean_area"]))
+        self.assertEqual(examined.submaps, by_program["counts"]["submaps"])
+        self.assertEqual(examined.advice, quality["advice"])
+        self.assertFalse(examined.is_closed)
+        closed = self.file("examined.pbstream")
+        sdf.close_loops(path, closed)
+        self.assertTrue(sdf.examine_map(closed).is_closed)
+
+    def test_says_what_cartographer_would_do(self):
+        path = self.file("a.pbstream")
+        trusting = sdf.load_options({
+            "loop_closing.closing.optimization.odometry_translation_weight": 1e8,
+            "loop_closing.closing.optimization.odometry_rotation_weight": 1e8})
+        closed = sdf.close_loops(path, options=trusting)
+        self.assertEqual(closed.host_motion.host_weights, (1e8, 1e8))
+        self.assertLess(closed.host_motion.map_weights[0], 1e8)
+        self.assertGreater(closed.host_motion.max_translation, 0)
+        self.assertIsNone(sdf.close_loops(path, self.file("dropped.pbstream"),
+                                          drop_odometry=True).host_motion)
+        self.assertTrue(all(not match.accepted for match in closed.refused))
 
     def test_a_refusal_is_an_answer(self):
         a, b, output = self.file("a.pbstream"), self.file("b.pbstream"), self.file("no.pbstream")
@@ -239,6 +358,7 @@ class MapTest(unittest.TestCase):
         link = merged.links[0]
         self.assertEqual((link.first, link.second), (0, 1))
         self.assertTrue(link.localization.localized)
+        self.assert_is_answer(link.localization, by_program["pairs"][0])
         self.assertEqual(merged.overlapping_pairs, by_program["overlapping_pairs"])
         self.assertEqual(len(merged.contradictions), by_program["contradicting_pairs"])
         self.assertEqual(pathlib.Path(other).read_bytes(), pathlib.Path(output).read_bytes())
@@ -270,6 +390,22 @@ class MapTest(unittest.TestCase):
         self.assertEqual(audit.refusal, "")
         self.assertGreater(max(c.error_after[0] for c in doubtful), 0)
         self.assertEqual(pathlib.Path(other).read_bytes(), pathlib.Path(output).read_bytes())
+        for walls, members in ((audit.walls_before, by_program["walls_before"]),
+                               (audit.walls_after, by_program["walls_after"])):
+            for name, value in members.items():
+                self.assertEqual(getattr(walls, name), value, name)
+        self.assertLess(audit.walls_after.contradiction_ratio,
+                        audit.walls_before.contradiction_ratio)
+        self.assertEqual(audit.dropped, [c.index for c in doubtful])
+        # A list in their place.
+        chosen = [audit.constraints[0].index, audit.constraints[3].index]
+        listed = sdf.audit(falsified, self.file("chosen.pbstream"), drop=chosen)
+        self.assertEqual(listed.dropped, sorted(chosen))
+        self.assertEqual(listed.doubtful, audit.doubtful)
+        self.assertEqual(len(sdf.read_map(self.file("chosen.pbstream")).constraints),
+                         len(constraints) - 2)
+        with self.assertRaises(ValueError):
+            sdf.audit(falsified, drop=[len(constraints)])
 
     def scan_in(self, filestem, x, y):
         """End points of 360 beams from (x, y) in the map of filestem.yaml."""
