@@ -151,10 +151,11 @@ void AppendGradients(const ArrayXXf& values, const Index i, const Index j,
   float* __restrict const orientations = &window->orientations[old_size];
   float* __restrict const weights = &window->weights[old_size];
   const float* const left = &values(i, j - 1);
-  const float* const centre = &values(i, j);
+  const float* const below = &values(i - 1, j);
+  const float* const above = &values(i + 1, j);
   const float* const right = &values(i, j + 1);
   for (size_t k = 0; k < size; ++k) {
-    const float x = 0.5f * (centre[k + 1] - centre[k - 1]);
+    const float x = 0.5f * (above[k] - below[k]);
     const float y = 0.5f * (right[k] - left[k]);
     orientations[k] = Angle(y, x);
     weights[k] = static_cast<float>(row_weights[k] * column_weight) *
