@@ -40,6 +40,9 @@ inline std::string WriteInput(const std::string& name,
 
 }  // namespace cartographer_sdf::fuzz
 
+// libFuzzer and main.cc call it first; see seeds.cc.
+extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
+
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 #endif  // TEST_FUZZ_FUZZ_TARGET_H_

@@ -76,24 +76,11 @@ int RunFor(const double seconds, const uint32_t seed) {
   return EXIT_SUCCESS;
 }
 
-int WriteSeeds(const std::string& directory) {
-  std::filesystem::create_directories(directory);
-  int number = 0;
-  for (const Bytes& seed : cartographer_sdf::fuzz::Seeds()) {
-    std::ofstream(directory + "/seed_" + std::to_string(number++),
-                  std::ios::binary)
-        << seed;
-  }
-  return EXIT_SUCCESS;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+  LLVMFuzzerInitialize(&argc, &argv);
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  if (arguments.size() == 2 && arguments[0] == "--write_seeds") {
-    return WriteSeeds(arguments[1]);
-  }
   for (const Bytes& seed : cartographer_sdf::fuzz::Seeds()) Run(seed);
   if (arguments.size() >= 2 && arguments[0] == "--seconds") {
     return RunFor(std::stod(arguments[1]),

@@ -5,11 +5,14 @@
 // floor plans, and images of maps. Each input is read as all of them; the seeds
 // are of each kind.
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/evaluation/map_errors.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/map_image/grey_image.h"
 #include "cartographer_sdf/map_image/ros_map.h"
 #include "cartographer_sdf/recording/carmen_log.h"
@@ -18,9 +21,28 @@
 #include "cartographer_sdf/simulation/floor_plan.h"
 #include "cartographer_sdf/simulation/truth.h"
 #include "glog/logging.h"
+#include "test/fuzz/drawn_room.h"
 #include "test/fuzz/fuzz_target.h"
 
 namespace cartographer_sdf::fuzz {
+namespace {
+
+// Two scans of a robot that drives through the room.
+std::string DriveText() {
+  std::string text = "[";
+  for (int scan = 0; scan < 2; ++scan) {
+    absl::StrAppend(&text, scan > 0 ? "," : "", "{\"time\": ", scan,
+                    ", \"odometry\": {\"x\": ", scan,
+                    ", \"y\": 0, \"yaw\": 0}, \"angle_min\": 0, "
+                    "\"angle_increment\": 0.1, \"range_max\": 9, "
+                    "\"ranges\": [1.5");
+    for (int k = 1; k < 60; ++k) absl::StrAppend(&text, ",1.", k);
+    text += "]}";
+  }
+  return text + "]";
+}
+
+}  // namespace
 
 std::vector<std::string> Seeds() {
   return {
@@ -40,9 +62,24 @@ std::vector<std::string> Seeds() {
       "\"ranges\": [1, 2.5, null, NaN, Infinity], \"sensor\": {\"x\": 0.1}}\n",
       "[{\"points\": [[1, 2], [3, -4e-1]]}]\n",
       "angle,range\n0.5,3\n",
+      DriveText(),
       "reference_trajectory,reference_index,query_trajectory,query_index,"
       "accepted,score,x,y,yaw,verdict,inliers,overlap,hit_ratio,"
       "contradiction_ratio\n0,1,0,5,1,2.5,1,2,3,accepted,4,0.5,0.5,0.1\n"};
+}
+
+// Follows a robot by its scans, whatever they are.
+void FollowDrive(const ScanRecording& recording) {
+  constexpr size_t kMaxNumScans = 8;
+  static const auto* const room = new DrawnMap(DrawRoom());
+  ScanSession session(ScanLocalizationOptions(), ScanSessionOptions(),
+                      room->panoramas);
+  for (size_t k = 0; k < std::min(kMaxNumScans, recording.scans.size()); ++k) {
+    const SessionAnswer& answer = session.Add(recording.scans[k]);
+    CheckCandidates(answer.localization);
+    if (answer.T_map_robot)
+      CHECK(answer.T_map_robot->translation().allFinite());
+  }
 }
 
 }  // namespace cartographer_sdf::fuzz
@@ -60,7 +97,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* const data,
   (void)ReadPgm(path, 0.05);
   (void)ReadPngImage(path);
   (void)ReadScanFile(path);
-  (void)ReadScanRecording(path);
+  const absl::StatusOr<ScanRecording> recording = ReadScanRecording(path);
+  if (recording.ok()) fuzz::FollowDrive(*recording);
   (void)ReadRosMap(fuzz::WriteInput(
       "input.yaml", std::string(reinterpret_cast<const char*>(data), size)));
   return 0;
