@@ -177,6 +177,33 @@ void MatchSubmaps(const Map& map, const Pair& pair, const Rigid2& truth,
   const std::optional<Match> match = MatchPlaces(
       MatchOptions(), map.described.places.at(pair.reference), query);
   const double time = Milliseconds(begin);
+  tally->Add(time, match && match->verdict == Verdict::kAccepted,
+             match && AreNear(match->pair.T_reference_query, truth,
+                              ObservedCentroid(query.surface), kRightPose));
+}
+
+// Returns the time to prepare the submap for all searches in it.
+double SearchScan(const Map& map, const Pair& pair, const NodeId& node,
+                  const Rigid2& truth, Tally* const tally) {
+  host::mapping::ValueConversionTables tables;
+  const OccupancyGrid& submap = map.grids.at(pair.reference);
+  const host::mapping::ProbabilityGrid grid = HostGrid(submap, &tables);
+  host::mapping::scan_matching::proto::FastCorrelativeScanMatcherOptions2D
+      options;
+  options.set_linear_search_window(7.);
+  options.set_angular_search_window(M_PI / 6.);
+  options.set_branch_and_bound_depth(7);
+  std::clock_t begin = std::clock();
+  const FastCorrelativeScanMatcher2D matcher(grid, options);
+  const double preparation = Milliseconds(begin);
+  const host::sensor::PointCloud cloud =
+      HostCloud(map.described.point_clouds.at(node));
+  float score = 0.f;
+  host::transform::Rigid2d pose;
+  begin = std::clock();
+  const bool is_found =
+      matcher.MatchFullSubmap(cloud, kMinHostScore, &score, &pose);
+  const double time = Milliseconds(begin);
   const Rigid2 T_submap_scan =
       submap.geometry.T_submap_grid *
       Rigid2(pose.translation(), pose.rotation().angle());
