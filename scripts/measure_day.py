@@ -38,8 +38,8 @@ def print_summary(rows):
     """The first and the last tenth; what grows differs."""
     tenth = max(1, len(rows) // 10)
     print("column,first_tenth,last_tenth")
-    for column in ("places", "resident_mb", "scan_mean_ms", "scan_max_ms", "callback_mean_us",
-                   "worker_ms_per_submap"):
+    for column in ("places", "resident_mb", "scan_mean_ms", "scan_max_ms", "scan_mean_cpu_ms",
+                   "callback_mean_us", "worker_ms_per_submap"):
         values = [row[column] for row in rows]
         print(f"{column},{median(values[:tenth]):.4g},{median(values[-tenth:]):.4g}")
     for column in ("submaps", "trajectories", "closures", "localized", "kidnaps", "deletions",
@@ -55,7 +55,7 @@ def draw(rows, path):
     submaps = [row["submaps"] for row in rows]
     for axis, columns, label in (
             (axes[0], ["resident_mb"], "resident memory [MB]"),
-            (axes[1], ["scan_mean_ms", "scan_max_ms"], "time for a scan [ms]"),
+            (axes[1], ["scan_mean_ms", "scan_max_ms", "scan_mean_cpu_ms"], "time for a scan [ms]"),
             (axes[2], ["worker_ms_per_submap"], "worker, CPU for a submap [ms]")):
         for column in columns:
             axis.plot(submaps, [row[column] for row in rows], linewidth=1, label=column)
