@@ -204,6 +204,19 @@ def check_error(truth, message, pose, offset, what):
           f"{what}: {meters:.2f} m and {radians:.3f} rad off")
 
 
+def check_covariance(pose, error):
+    """Of x, y and yaw alone, symmetric, and no smaller than what the pose is off by."""
+    rows = [list(pose.covariance[6 * k:6 * k + 6]) for k in range(6)]
+    axes = (0, 1, 5)
+    deviations = [math.sqrt(rows[k][k]) for k in axes]
+    others = [rows[j][k] for j in range(6) for k in range(6) if j not in axes or k not in axes]
+    check(all(abs(rows[j][k] - rows[k][j]) < 1e-12 for j in axes for k in axes)
+          and not any(others) and 0. < deviations[2] < 0.2
+          and 0.03 <= min(deviations[:2]) and max(deviations[:2]) < MAX_ERROR
+          and error < 4. * max(deviations[:2]),
+          "its deviations are {:.3f} m, {:.3f} m and {:.4f} rad".format(*deviations))
+
+
 def localize(directory, path, bag):
     second_offset = FIRST_BEGIN + LENGTH + PAUSE - SECOND_BEGIN
     clock = rospy.Publisher("/clock", Clock, queue_size=10)
@@ -213,11 +226,15 @@ def localize(directory, path, bag):
         truth = Truth(call("/trajectory_query", TrajectoryQuery, 0).trajectory)
         play(bag, LOCALIZATION_RATE, "-u", LENGTH)
         check(wait_until(lambda: listener.poses, 60), "a pose is published")
-        check_error(truth, listener.poses[0], listener.poses[0].pose.pose, 0., "located")
+        found = listener.poses[0]
+        check_error(truth, found, found.pose.pose, 0., "located")
+        check_covariance(found.pose, truth.error(found.header.stamp, 0., found.pose.pose)[0])
         answer = call("/sdf_locate", Locate, LocateRequest(trajectory_id=-1))
         check(answer.located and answer.probability > 0.99 and answer.has_start_pose,
               f"the service says the same: after {answer.distance_driven:.1f} m, probability "
               f"{answer.probability:.4f}, runner-up {answer.runner_up_probability:.4f}")
+        check(answer.pose.pose.covariance == found.pose.covariance,
+              "with the same covariance")
         wait_until(lambda: listener.segments.get("in_graph"), 20)
         check(listener.segments.get("in_graph", 0) > 0, f"matches are shown: {listener.segments}")
         settle(answer.trajectory_id, clock)

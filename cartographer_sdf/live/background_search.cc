@@ -10,6 +10,7 @@
 #include "cartographer_sdf/geometry/distinct_poses.h"
 #include "cartographer_sdf/geometry/evenly_spaced.h"
 #include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/localization/placement_covariance.h"
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
 
 namespace cartographer_sdf {
@@ -34,6 +35,29 @@ void AddNodes(const SubmapId& submap, const std::vector<SubmapNode>& nodes,
     (*inserted)[submap].emplace(node.id, node.T_submap_node);
     scans->emplace(node.id, NodeScan(*node.data));
   }
+}
+
+// Each place is at the origin of the map frame.
+MapLayout LayoutOf(const std::map<SubmapId, Place>& places) {
+  PoseGraph graph;
+  for (const auto& [id, place] : places) graph.submap_poses[id] = Rigid2();
+  return MakeMapLayout(graph, {}, places);
+}
+
+// Of the best placement; zero if there is none.
+Eigen::Matrix3d MeasureCovariance(const std::map<SubmapId, Place>& map_places,
+                                  const std::map<SubmapId, Place>& query_places,
+                                  const MapPair& maps,
+                                  const Localization& localization,
+                                  const Rigid2& T_query_tracking) {
+  if (localization.placements.empty()) return Eigen::Matrix3d::Zero();
+  const Placement& best = localization.placements.front();
+  std::vector<PairPose> votes;
+  for (const size_t vote : best.votes) {
+    votes.push_back(localization.matches[vote].pair);
+  }
+  return PlacementCovariance(map_places, query_places, maps, votes,
+                             best.T_map_query, T_query_tracking);
 }
 
 }  // namespace
@@ -138,9 +162,7 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
       Describe({trajectory_id, kGrowingSubmapIndex}, *grid);
   if (!place) return query;
   const std::map<SubmapId, Place> query_places = {{place->id, *place}};
-  PoseGraph query_graph;
-  query_graph.submap_poses[place->id] = Rigid2();
-  const MapLayout query_layout = MakeMapLayout(query_graph, {}, query_places);
+  const MapLayout query_layout = LayoutOf(query_places);
   const LiveLocalizationOptions& options = options_.localization;
   query.localization = cartographer_sdf::Localize(
       options.localizer, options_.consistency, options_.match,
@@ -156,6 +178,10 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
         return std::move(recognition.matches);
       },
       MakeExecutor(1));
+  query.covariance = MeasureCovariance(
+      places(), query_places, {&map, &query_layout}, query.localization,
+      query.T_local_query.Inverse() *
+          FromHost(search.nodes.back()->local_pose));
   CountCertain(query.T_local_query, &search, &query);
   if (query.num_certain >= options.min_num_queries) {
     CloseWithMap(search, *place, &query);

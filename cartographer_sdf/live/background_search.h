@@ -8,6 +8,7 @@
 #ifndef CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
 #define CARTOGRAPHER_SDF_LIVE_BACKGROUND_SEARCH_H_
 
+#include <Eigen/Core>
 #include <deque>
 #include <map>
 #include <memory>
@@ -84,6 +85,9 @@ class BackgroundSearch {
     // Number of consecutive queries, including this one, that were localised at
     // the same place.
     int num_certain = 0;
+    // Of the tracking frame at the newest scan in the map, by the best
+    // placement (LocalizationResult::covariance); zero if there is none.
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     size_t num_candidates = 0;
     // Once enough queries agree: the best matches as closures, with constraints
     // of the trajectory's nodes.

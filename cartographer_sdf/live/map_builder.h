@@ -14,6 +14,7 @@
 #ifndef CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
 #define CARTOGRAPHER_SDF_LIVE_MAP_BUILDER_H_
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -49,10 +50,13 @@ struct LocalizationResult {
   // Time of the newest scan used.
   cartographer::common::Time time;
   // The best pose so far; none if nothing matches. Reliable only if
-  // `localized`. Pose in the map of the tracking frame at `time` ...
+  // `localized`. Pose in the map of the tracking frame at `time`.
   std::optional<Rigid2> T_map_tracking;
-  // ... and of the trajectory's local frame, which stays valid while local SLAM
-  // does not drift.
+  // Of x, y [m^2] in the map frame and of the heading [rad^2] of that pose, if
+  // it is the right one: large along what the walls seen do not hold.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  // The pose of the trajectory's local frame, which stays valid while local
+  // SLAM does not drift.
   std::optional<Rigid2> T_map_local;
   // Where the tracking frame would be by the best placement that this pose
   // excludes; none if there is none.

@@ -141,6 +141,15 @@ NodeStatus DescribeStatus(const LiveSummary& summary,
   values.emplace_back("score", absl::StrFormat("%.1f", localization->score));
   values.emplace_back("runner-up score",
                       absl::StrFormat("%.1f", localization->runner_up_score));
+  if (localization->T_map_tracking) {
+    const Eigen::Vector3d deviations =
+        localization->covariance.diagonal().cwiseSqrt();
+    values.emplace_back(
+        "deviation x, y [m]",
+        absl::StrFormat("%.2f, %.2f", deviations.x(), deviations.y()));
+    values.emplace_back("deviation yaw [rad]",
+                        absl::StrFormat("%.3f", deviations.z()));
+  }
   values.emplace_back("searched for [m]",
                       absl::StrFormat("%.1f", localization->distance_driven));
   return status;

@@ -44,6 +44,7 @@ void FillIn(const BackgroundSearch::Query& query,
   result->T_map_local = best.T_map_query * query.T_local_query.Inverse();
   const Rigid2 T_local_tracking = FromHost(newest.local_pose);
   result->T_map_tracking = *result->T_map_local * T_local_tracking;
+  result->covariance = query.covariance;
   const auto runner_up = std::find_if(
       found.placements.begin() + 1, found.placements.end(),
       [](const Placement& placement) { return placement.is_rival; });

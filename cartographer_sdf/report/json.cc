@@ -155,16 +155,10 @@ Json LinksJson(const std::vector<SessionLink>& links) {
 }
 
 Json CandidateJson(const ScanCandidate& candidate) {
-  Json covariance = Json::array();
-  for (int row = 0; row < 3; ++row) {
-    covariance.push_back({candidate.covariance(row, 0),
-                          candidate.covariance(row, 1),
-                          candidate.covariance(row, 2)});
-  }
   const BeamEvidence& evidence = candidate.evidence;
   return {{"T_map_robot", ToJson(candidate.T_map_robot)},
           {"probability", candidate.probability},
-          {"covariance", covariance},
+          {"covariance", ToJson(candidate.covariance)},
           {"beams", evidence.num_beams},
           {"fit", evidence.fit},
           {"at_wall", evidence.at_wall},
@@ -195,6 +189,14 @@ Json ToJson(const Rigid2& pose) {
   return {{"x", pose.translation().x()},
           {"y", pose.translation().y()},
           {"yaw", pose.rotation()}};
+}
+
+Json ToJson(const Eigen::Matrix3d& matrix) {
+  Json rows = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2)});
+  }
+  return rows;
 }
 
 Json ToJson(const SubmapId& id) {

@@ -34,6 +34,8 @@ using Json = nlohmann::ordered_json;
 
 // {x, y, yaw}
 [[nodiscard]] Json ToJson(const Rigid2& pose);
+// Its rows.
+[[nodiscard]] Json ToJson(const Eigen::Matrix3d& matrix);
 // {trajectory, index}
 [[nodiscard]] Json ToJson(const SubmapId& id);
 

@@ -35,10 +35,6 @@ struct NodeParameters {
   // Whether /sdf_localize ends the trajectory and starts another one, as
   // /sdf_locate does on request.
   bool restart_to_search = false;
-  // Of a found pose. The searcher does not estimate them: they are what its
-  // answers are off by in a map that is as bent as usual.
-  double translation_deviation_meters = 0.15;
-  double rotation_deviation = 0.03;  // [rad]
 };
 
 // `get(name, value)` sets a value where there is such a parameter.
@@ -50,8 +46,6 @@ NodeParameters LoadParameters(const Get& get) {
   get("matches_topic", &parameters.matches_topic);
   get("diagnostics_topic", &parameters.diagnostics_topic);
   get("restart_to_search", &parameters.restart_to_search);
-  get("translation_deviation_meters", &parameters.translation_deviation_meters);
-  get("rotation_deviation", &parameters.rotation_deviation);
   return parameters;
 }
 
@@ -67,24 +61,27 @@ void FillPose(const cartographer::transform::Rigid3d& host_pose,
   pose->orientation.w = host_pose.rotation().w();
 }
 
-// A geometry_msgs/PoseWithCovarianceStamped, without its stamp.
+// A geometry_msgs/PoseWithCovarianceStamped, without its stamp. `found` must
+// have a pose.
 template <typename PoseMessage>
-void FillPose(const Rigid2& T_map_tracking, const std::string& map_frame,
-              const NodeParameters& parameters, PoseMessage* const message) {
+void FillPose(const LocalizationResult& found, const std::string& map_frame,
+              PoseMessage* const message) {
   message->header.frame_id = map_frame;
-  FillPose(ToHost(T_map_tracking), &message->pose.pose);
-  const double translation = parameters.translation_deviation_meters;
-  const double rotation = parameters.rotation_deviation;
-  // Rows and columns are x, y, z and rotations about them.
-  message->pose.covariance[0] = translation * translation;
-  message->pose.covariance[7] = translation * translation;
-  message->pose.covariance[35] = rotation * rotation;
+  FillPose(ToHost(*found.T_map_tracking), &message->pose.pose);
+  // Rows and columns of the message are x, y, z and rotations about them.
+  constexpr int kAxes[] = {0, 1, 5};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      message->pose.covariance[6 * kAxes[row] + kAxes[column]] =
+          found.covariance(row, column);
+    }
+  }
 }
 
 // The answer of cartographer_sdf_msgs/Locate, without the stamp of the pose.
 template <typename Response>
 void FillLocation(const LocalizationResult& found, const std::string& map_frame,
-                  const NodeParameters& parameters, Response* const response) {
+                  Response* const response) {
   response->success = true;
   response->trajectory_id = found.trajectory_id;
   response->located = found.localized;
@@ -94,7 +91,7 @@ void FillLocation(const LocalizationResult& found, const std::string& map_frame,
   response->distance_driven = found.distance_driven;
   response->num_queries = found.num_queries;
   if (!found.T_map_tracking) return;
-  FillPose(*found.T_map_tracking, map_frame, parameters, &response->pose);
+  FillPose(found, map_frame, &response->pose);
   response->score = found.score;
   response->probability = ProbabilitiesOf(found).best;
   response->has_runner_up = found.T_map_runner_up.has_value();
@@ -109,8 +106,8 @@ void FillLocation(const LocalizationResult& found, const std::string& map_frame,
 template <typename Request, typename Response>
 std::optional<cartographer::common::Time> ServeLocate(
     const Request& request, const std::string& map_frame,
-    const NodeParameters& parameters, const TrajectoryActions& actions,
-    OperatorDesk* const desk, Response* const response) {
+    const TrajectoryActions& actions, OperatorDesk* const desk,
+    Response* const response) {
   std::optional<int> trajectory_id =
       request.trajectory_id >= 0 ? std::optional<int>(request.trajectory_id)
                                  : desk->NewestTrajectory();
@@ -131,7 +128,7 @@ std::optional<cartographer::common::Time> ServeLocate(
     response->message = "the trajectory was never searched for";
     return std::nullopt;
   }
-  FillLocation(*found, map_frame, parameters, response);
+  FillLocation(*found, map_frame, response);
   if (const std::optional<StartPose> start =
           desk->GetStartPose(*trajectory_id)) {
     response->has_start_pose = true;

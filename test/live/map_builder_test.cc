@@ -338,6 +338,11 @@ TEST_F(LocalizationTest, LocatesFromAnyYaw) {
       ExpectNear(*result.T_map_local, TrueMapPose(poses.front()), 0.3, 0.05);
       ExpectNear(*result.T_map_tracking,
                  TrueMapPose(PoseAt(poses, result.time)), 0.3, 0.05);
+      // Walls all round hold the pose.
+      const Eigen::Vector3d deviations =
+          result.covariance.diagonal().cwiseSqrt();
+      EXPECT_GE(deviations.minCoeff(), 0.005);
+      EXPECT_LT(deviations.maxCoeff(), 0.3);
       {
         const absl::MutexLock lock(&mutex);
         ASSERT_THAT(results, SizeIs(1));

@@ -133,9 +133,13 @@ TEST(OperatorViewTest, DescribesTheStatus) {
   result.localized = true;
   result.score = 10.;
   result.T_map_tracking = Rigid2();
+  result.covariance = Eigen::Vector3d(0.25, 0.01, 1e-4).asDiagonal();
   const NodeStatus located = DescribeStatus(summary, result, 0.);
   EXPECT_TRUE(located.is_fine);
   EXPECT_THAT(located.message, HasSubstr("probability 1.0000"));
+  EXPECT_THAT(located.values,
+              AllOf(Contains(Pair("deviation x, y [m]", "0.50, 0.10")),
+                    Contains(Pair("deviation yaw [rad]", "0.010"))));
   EXPECT_TRUE(DescribeStatus(summary, std::nullopt, 0.).is_fine);
 }
 

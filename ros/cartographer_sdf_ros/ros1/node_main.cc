@@ -110,7 +110,7 @@ class OperatorTopics {
     for (const LocalizationResult& result : desk_->TakeResults()) {
       if (!result.localized) continue;
       PoseMessage message;
-      FillPose(*result.T_map_tracking, map_frame_, parameters_, &message);
+      FillPose(result, map_frame_, &message);
       message.header.stamp = cartographer_ros::ToRos(result.time);
       for (ros::Publisher& publisher : pose_publishers_) {
         if (publisher) publisher.publish(message);
@@ -149,8 +149,8 @@ class OperatorTopics {
   }
 
   bool HandleLocate(Locate::Request& request, Locate::Response& response) {
-    const auto time = ServeLocate(request, map_frame_, parameters_,
-                                  MakeActions(), desk_, &response);
+    const auto time =
+        ServeLocate(request, map_frame_, MakeActions(), desk_, &response);
     if (time) response.pose.header.stamp = cartographer_ros::ToRos(*time);
     return true;
   }

@@ -114,8 +114,8 @@ class OperatorTopics {
     locate_ = ros_node_->create_service<Locate>(
         "sdf_locate", [this](const std::shared_ptr<Locate::Request> request,
                              const std::shared_ptr<Locate::Response> response) {
-          const auto time = ServeLocate(*request, map_frame_, parameters_,
-                                        MakeActions(), desk_, response.get());
+          const auto time = ServeLocate(*request, map_frame_, MakeActions(),
+                                        desk_, response.get());
           if (time) {
             response->pose.header.stamp = cartographer_ros::ToRos(*time);
           }
@@ -132,7 +132,7 @@ class OperatorTopics {
     for (const LocalizationResult& result : desk_->TakeResults()) {
       if (!result.localized) continue;
       PoseMessage message;
-      FillPose(*result.T_map_tracking, map_frame_, parameters_, &message);
+      FillPose(result, map_frame_, &message);
       message.header.stamp = cartographer_ros::ToRos(result.time);
       for (const auto& publisher : pose_publishers_) {
         publisher->publish(message);
