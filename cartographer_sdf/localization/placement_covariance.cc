@@ -67,8 +67,9 @@ Eigen::Matrix2d HoldOfWall(const std::vector<SurfacePoint>& walls,
 std::optional<double> NearnessOf(const SurfaceModel& reference,
                                  const Eigen::Vector2d& p_reference) {
   const CellGeometry& geometry = reference.geometry;
+  const PinnedCells cells = reference.cells.Pin();
   const std::optional<FieldSample> sample = SampleSurface(
-      reference,
+      geometry, *cells,
       geometry.GridToCells(geometry.T_submap_grid.Inverse() * p_reference));
   if (!sample) return std::nullopt;
   const double ratio =

@@ -40,7 +40,7 @@ namespace mapping = cartographer::mapping;
 using cartographer::cloud::MapBuilderStub;
 using cartographer::common::Time;
 using ::testing::SizeIs;
-using testing::TheBuilding;
+using testing::TheDrivenOffice;
 
 constexpr absl::Duration kPatience = absl::Minutes(3);
 
@@ -171,7 +171,7 @@ constexpr char kOftenOptimized[] = "POSE_GRAPH.optimize_every_n_nodes = 5\n";
 
 TEST(FleetTest, RobotsWithoutACommonFrameAreJoined) {
   Server server(kOftenOptimized);
-  const std::vector<Rigid2>& all = TheBuilding().poses;
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
   const auto part = [&all](const double begin, const double end) {
     const auto count = static_cast<double>(all.size());
     return std::vector<Rigid2>(

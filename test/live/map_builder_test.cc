@@ -37,12 +37,12 @@ using testing::PoseAt;
 using testing::Robot;
 using testing::SensorIds;
 using ::testing::SizeIs;
-using testing::TheBuilding;
+using testing::TheDrivenOffice;
 
 // The host drops the first scan, which is its frame nevertheless, and some of
 // the others.
 Rigid2 TruePose(const mapping::TrajectoryNode& node) {
-  return PoseAt(TheBuilding().poses, node.time());
+  return PoseAt(TheDrivenOffice().poses, node.time());
 }
 
 bool IsNear(const Rigid2& a, const Rigid2& b, const double meters,
@@ -86,7 +86,7 @@ TEST(MapBuilderTest, ClosesLoops) {
               const mapping::TrajectoryBuilderInterface::InsertionResult>) {
         ++num_results;
       });
-  const std::vector<Rigid2>& poses = TheBuilding().poses;
+  const std::vector<Rigid2>& poses = TheDrivenOffice().poses;
   Robot robot(map_builder.get(), trajectory_id, 1);
   robot.Drive(poses);
   map_builder->FinishTrajectory(trajectory_id);
@@ -153,7 +153,7 @@ TEST(MapBuilderTest, DetectsWithoutInjectingOnRequest) {
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder, nullptr);
   Robot robot(map_builder.get(), trajectory_id, 1);
-  robot.Drive(TheBuilding().poses);
+  robot.Drive(TheDrivenOffice().poses);
   map_builder->FinishTrajectory(trajectory_id);
   map_builder->pose_graph()->RunFinalOptimization();
   EXPECT_GE(live->GetSummary().num_closures, 3);
@@ -173,7 +173,7 @@ class LocalizationTest : public ::testing::Test {
     const int trajectory_id = map_builder->AddTrajectoryBuilder(
         SensorIds(), stock.trajectory_builder, nullptr);
     Robot robot(map_builder.get(), trajectory_id, 1);
-    const std::vector<Rigid2>& poses = TheBuilding().poses;
+    const std::vector<Rigid2>& poses = TheDrivenOffice().poses;
     robot.Drive({poses.begin(), poses.begin() + NumMapped()});
     map_builder->FinishTrajectory(trajectory_id);
     map_builder->pose_graph()->RunFinalOptimization();
@@ -181,11 +181,11 @@ class LocalizationTest : public ::testing::Test {
   }
   static void TearDownTestSuite() { delete directory_; }
   static std::ptrdiff_t NumMapped() {
-    return static_cast<std::ptrdiff_t>(TheBuilding().poses.size() * 4 / 9);
+    return static_cast<std::ptrdiff_t>(TheDrivenOffice().poses.size() * 4 / 9);
   }
   static std::string MapPath() { return directory_->path() + "/map.pbstream"; }
   static Rigid2 TrueMapPose(const Rigid2& T_world_robot) {
-    return TheBuilding().poses.front().Inverse() * T_world_robot;
+    return TheDrivenOffice().poses.front().Inverse() * T_world_robot;
   }
 
   static testing::TemporaryDirectory* directory_;
@@ -193,7 +193,7 @@ class LocalizationTest : public ::testing::Test {
 testing::TemporaryDirectory* LocalizationTest::directory_ = nullptr;
 
 TEST_F(LocalizationTest, LocatesFromAnyYaw) {
-  const std::vector<Rigid2>& all = TheBuilding().poses;
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
   for (const bool is_frozen : {true, false}) {
     for (const bool is_reversed : {false, true}) {
       const auto stock = MakeStockOptions(kWithoutOwnSearch);
@@ -285,7 +285,7 @@ TEST_F(LocalizationTest, NextTrajectoryStartsWhereItWasFound) {
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder, nullptr);
   EXPECT_FALSE(live->GetStartPose(trajectory_id));
-  const std::vector<Rigid2>& all = TheBuilding().poses;
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
   const std::vector<Rigid2> poses(all.begin() + NumMapped() / 2,
                                   all.begin() + NumMapped() / 2 + 80);
   size_t num_driven = 0;

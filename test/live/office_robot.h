@@ -35,32 +35,32 @@ inline constexpr char kWithoutOwnSearch[] =
 inline constexpr double kStep = 0.25;     // [m]
 inline constexpr double kTimeStep = 0.5;  // [s]
 
-struct Building {
+struct DrivenOffice {
   FloorPlan plan;
   std::vector<Rigid2> poses;  // T_world_robot, a step apart
 };
 
 // A round trip, and parts of it again.
-inline const Building& TheBuilding() {
-  static const Building* const instance = [] {
-    auto* const building = new Building;
-    building->plan = MakeOffice(OfficeOptions(), 3);
+inline const DrivenOffice& TheDrivenOffice() {
+  static const DrivenOffice* const instance = [] {
+    auto* const office = new DrivenOffice;
+    office->plan = MakeOffice(OfficeOptions(), 3);
     DriveOptions drive;
     drive.length = 130.;
-    const auto driven = Drive(building->plan, drive, 5);
+    const auto driven = Drive(office->plan, drive, 5);
     CHECK(driven.ok()) << driven.status();
     for (const DrivenPose& pose : *driven) {
       const Rigid2& T_world_robot = pose.T_world_robot;
-      if (building->poses.empty() ||
-          (building->poses.back().translation() - T_world_robot.translation())
+      if (office->poses.empty() ||
+          (office->poses.back().translation() - T_world_robot.translation())
                   .norm() >= kStep ||
           std::abs(
-              (building->poses.back().Inverse() * T_world_robot).rotation()) >=
+              (office->poses.back().Inverse() * T_world_robot).rotation()) >=
               0.1) {
-        building->poses.push_back(T_world_robot);
+        office->poses.push_back(T_world_robot);
       }
     }
-    return building;
+    return office;
   }();
   return *instance;
 }
@@ -98,7 +98,7 @@ class Robot {
       T_odometry_previous_ = T_odometry_robot;
       FeedScan(
           map_builder_, trajectory_id_, seconds_,
-          TakeScan(TheBuilding().plan, {}, T_world_robot, lidar, &random_));
+          TakeScan(TheDrivenOffice().plan, {}, T_world_robot, lidar, &random_));
       if (stop && stop()) return;
     }
   }
