@@ -186,10 +186,6 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                         const cartographer::mapping::Trimmable& graph);
   std::vector<SubmapId> FindGone(const AreLive& are_live,
                                  const cartographer::mapping::Trimmable& graph);
-  // Submaps that came and went between two rounds, so that FindGone() saw them
-  // in none.
-  [[nodiscard]] std::vector<SubmapId> FindMissed() const
-      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   // Injects the constraints of ready closures whose submaps and nodes exist.
   void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
                    const HostNodes& nodes)

@@ -37,7 +37,6 @@ void Searcher::EnterRound(mapping::Trimmable* const graph,
   const absl::MutexLock lock(&mutex_);
   if (is_shut_down_) return;
   for (const SubmapId& id : gone) ForgetSubmap(id);
-  for (const SubmapId& id : FindMissed()) ForgetSubmap(id);
   if (!gate_.EnterRound(generation, counts.num_done, counts.num_waiting) ||
       !MayInject()) {
     return;
@@ -110,19 +109,6 @@ std::vector<SubmapId> Searcher::FindGone(const AreLive& are_live,
     known = std::move(now);
   }
   return gone;
-}
-
-// A submap is in the graph before it has a record.
-std::vector<SubmapId> Searcher::FindMissed() const {
-  std::vector<SubmapId> missed;
-  for (const auto& [id, record] : submaps_) {
-    const auto submaps = submaps_in_graph_.find(id.trajectory);
-    if (submaps != submaps_in_graph_.end() &&
-        submaps->second.count(id.index) == 0) {
-      missed.push_back(id);
-    }
-  }
-  return missed;
 }
 
 void Searcher::InjectReady(
