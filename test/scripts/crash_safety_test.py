@@ -195,6 +195,8 @@ def test_full_disk(program, folder, disk):
                   "--places", disk / "p.places"]]
     for output in (target, disk / "m.csv"):
         output.write_bytes(b"")
+    # A file of places would fit an empty one.
+    (disk / "other").write_bytes(b"\0" * 600000)
     for command in arguments:
         before = {path.name: path.read_bytes() for path in disk.iterdir()}
         result = run(program, *command)
