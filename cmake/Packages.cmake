@@ -34,7 +34,8 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 # The targets that CMake exports include the program.
 string(JOIN ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "cartographer-sdf ${same_version}"
   libeigen3-dev libgoogle-glog-dev libabsl-dev libceres-dev libprotobuf-dev protobuf-compiler
-  zlib1g-dev liblua5.2-dev libcairo2-dev pkg-config)
+  zlib1g-dev liblua5.2-dev libcairo2-dev libyaml-cpp-dev
+  nlohmann-json3-dev pkg-config)
 
 if(TARGET cartographer_sdf_live)
   list(APPEND CPACK_COMPONENTS_ALL live)
