@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "cartographer_sdf/execution/executor.h"
+#include "cartographer_sdf/pbstream/joined_map_file.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/report/inspection.h"
 
