@@ -285,7 +285,7 @@ SDF_GLOBAL_CONSTRAINTS = {
         max_num_rounds = 4,
         -- An accepted match also proposes poses to the unmatched pairs of all
         -- submaps up to so many indices from its own. 0: to none.
-        max_proposal_distance = 4,
+        max_proposal_index_distance = 4,
         -- Score = log-odds of being right. Learned by scripts/learn_score.py
         -- --neighbours on the same maps as score_weights.
         weights = {

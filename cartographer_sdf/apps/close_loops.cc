@@ -41,7 +41,7 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   result.num_matches = matches.size();
   std::copy_if(matches.begin(), matches.end(),
                std::back_inserter(result.refused),
-               [](const Match& match) { return !IsCandidate(match); });
+               [](const Match& match) { return !IsLikely(match.verdict); });
   ClosingOptions closing = options.closing;
   closing.optimization = OptimizationInForce(closing, map->state.pose_graph);
   result.optimization = closing.optimization;

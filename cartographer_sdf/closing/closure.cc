@@ -27,15 +27,10 @@ const char* ClosureStatusName(const ClosureStatus status) {
   return kNames[static_cast<size_t>(status)];
 }
 
-bool IsCandidate(const Match& match) {
-  return match.verdict == Verdict::kAccepted ||
-         match.verdict == Verdict::kUncertain;
-}
-
 std::vector<Closure> MakeClosures(std::vector<Match> matches) {
   std::vector<Closure> closures;
   for (Match& match : matches) {
-    if (!IsCandidate(match)) continue;
+    if (!IsLikely(match.verdict)) continue;
     closures.emplace_back().match = std::move(match);
   }
   return closures;

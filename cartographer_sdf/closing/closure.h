@@ -42,11 +42,8 @@ struct Closure {
   ConstraintError graph_error;
 };
 
-// Whether a match may become a constraint: accepted, or uncertain, which other
-// closures may support through odometry (consistency.h).
-[[nodiscard]] bool IsCandidate(const Match& match);
-
-// Makes a closure of each candidate, in the order of the matches.
+// Makes a closure of each likely match, in the order of the matches: closures
+// may support each other through odometry (consistency.h).
 [[nodiscard]] std::vector<Closure> MakeClosures(std::vector<Match> matches);
 
 }  // namespace cartographer_sdf

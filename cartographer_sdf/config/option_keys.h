@@ -255,7 +255,7 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("min_pair_score", options.min_pair_score);
   visit("min_proposing_score", options.min_proposing_score);
   visit("max_num_rounds", options.max_num_rounds);
-  visit("max_proposal_distance", options.max_proposal_distance);
+  visit("max_proposal_index_distance", options.max_proposal_index_distance);
   visit("weights", options.weights);
   visit("max_gain", options.max_gain);
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -27,6 +26,7 @@
 #include "cartographer/sensor/odometry_data.h"
 #include "cartographer/sensor/timed_point_cloud_data.h"
 #include "cartographer_sdf/live/host_conversion.h"
+#include "cartographer_sdf/live/save_state.h"
 #include "cartographer_sdf/live/worker.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 
@@ -174,15 +174,7 @@ class Run {
 
   absl::Status WriteMap() const {
     if (!options_.output_path.has_value()) return absl::OkStatus();
-    const std::string& path = *options_.output_path;
-    const std::string temporary = path + ".part";
-    const bool written = map_builder_->SerializeStateToFile(
-        /*include_unfinished_submaps=*/true, temporary);
-    if (written && std::rename(temporary.c_str(), path.c_str()) == 0) {
-      return absl::OkStatus();
-    }
-    std::remove(temporary.c_str());
-    return absl::UnavailableError(absl::StrCat("cannot write ", path));
+    return SaveState(*options_.output_path, map_builder_.get());
   }
 
   LogRunResult TakeResult() {

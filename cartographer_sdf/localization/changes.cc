@@ -74,8 +74,9 @@ Seen Compare(const SurfaceModel& model, const SurfaceModel& points,
 
 void Add(const Seen& seen, Opinions* const opinions) {
   for (const ChangeCell& cell : seen.changed) ++(*opinions)[cell].num_changed;
-  for (const ChangeCell& cell : seen.unchanged)
+  for (const ChangeCell& cell : seen.unchanged) {
     ++(*opinions)[cell].num_unchanged;
+  }
 }
 
 // Cells that more pairs see changed than see wall unchanged there or next to

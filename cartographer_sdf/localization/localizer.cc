@@ -132,22 +132,18 @@ class Localizer {
     }
   }
 
-  // Accepted if it needed no support: a placement has its own evidence.
-  [[nodiscard]] static bool IsLikely(const Match& match) {
-    return match.verdict == Verdict::kAccepted ||
-           match.verdict == Verdict::kUncertain;
-  }
-
   [[nodiscard]] bool Votes(const Match& match) const {
-    return IsLikely(match) ||
+    return IsLikely(match.verdict) ||
            (options_.count_likely_matches &&
             match.verdict == Verdict::kUnlikely && match.pair.score > 0.);
   }
 
-  [[nodiscard]] bool HasAcceptedVote(const Placement& placement) const {
-    return std::any_of(
-        placement.votes.begin(), placement.votes.end(),
-        [this](const size_t vote) { return IsLikely(result_.matches[vote]); });
+  // A placement is support by itself.
+  [[nodiscard]] bool HasLikelyVote(const Placement& placement) const {
+    return std::any_of(placement.votes.begin(), placement.votes.end(),
+                       [this](const size_t vote) {
+                         return IsLikely(result_.matches[vote].verdict);
+                       });
   }
 
   void Vote() {
@@ -282,7 +278,7 @@ class Localizer {
     const std::string where =
         DescribeWhere(*task_.map.layout, result_.matches, best);
     const double fraction = ContradictingFraction();
-    if (!HasAcceptedVote(best)) {
+    if (!HasLikelyVote(best)) {
       Refuse(LocalizationVerdict::kUncertain,
              absl::StrFormat("too little agrees: no match at %s is certain by "
                              "itself; more of the place must be seen",

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "cartographer_sdf/localization/map_precision.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -27,9 +28,6 @@ constexpr double kStraightRatio = 0.15;
 // Where walls hold nothing [m], [rad].
 constexpr double kFreeTranslationSigma = 5.;
 constexpr double kFreeRotationSigma = 0.5;
-// What a map is off by itself, from one place to the next [m], [rad].
-constexpr double kPlaceTranslationSigma = 0.03;
-constexpr double kPlaceRotationSigma = 0.005;
 
 Eigen::Matrix3d Diagonal(const double translation, const double rotation) {
   return Eigen::Vector3d(translation, translation, rotation).asDiagonal();
@@ -169,8 +167,8 @@ Eigen::Matrix3d PlacementCovariance(
   }
   return information.llt().solve(Eigen::Matrix3d::Identity()) +
          ScatterOfVotes(maps, votes, T_map_robot, T_query_robot) +
-         Diagonal(kPlaceTranslationSigma * kPlaceTranslationSigma,
-                  kPlaceRotationSigma * kPlaceRotationSigma);
+         Diagonal(kMapTranslationSigma * kMapTranslationSigma,
+                  kMapRotationSigma * kMapRotationSigma);
 }
 
 }  // namespace cartographer_sdf

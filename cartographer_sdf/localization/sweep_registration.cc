@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cartographer_sdf/geometry/evenly_spaced.h"
+#include "cartographer_sdf/localization/map_precision.h"
 
 namespace cartographer_sdf {
 namespace {
@@ -25,9 +26,6 @@ constexpr double kResidualSigma = 0.05;
 // Neighbouring echoes err together, with the cells of the map: about one in so
 // many is independent.
 constexpr double kNumPerIndependentEcho = 10.;
-// What a map is off by itself [m], [rad].
-constexpr double kMapTranslationSigma = 0.03;
-constexpr double kMapRotationSigma = 0.005;
 
 std::vector<Eigen::Vector2d> SampleEchoes(const Sweep& sweep,
                                           const size_t count) {

@@ -13,44 +13,8 @@
 namespace cartographer_sdf {
 namespace {
 
-// The poses (reference <- query) of matches that support others.
-using Supporters = std::map<IdPair, Rigid2>;
-
-void Add(const NeighbourhoodMaps& maps, const PairPose& pair,
-         Supporters* const supporters) {
-  supporters->emplace(IdPair(pair.reference, pair.query),
-                      pair.T_reference_query);
-  // Within one map, which of the two is the reference means nothing.
-  if (maps.min_index_gap) {
-    supporters->emplace(IdPair(pair.query, pair.reference),
-                        pair.T_reference_query.Inverse());
-  }
-}
-
-int CountSupporters(const MatchSupportOptions& options,
-                    const NeighbourhoodMaps& maps, const Supporters& supporters,
-                    const PairPose& pair) {
-  int count = 0;
-  const std::vector<SubmapId> queries =
-      SubmapsAround(maps.queries, maps.query_links, pair.query,
-                    options.max_index_distance, 1);
-  for (const SubmapId& i :
-       SubmapsAround(maps.references, maps.reference_links, pair.reference,
-                     options.max_index_distance, 1)) {
-    for (const SubmapId& j : queries) {
-      if (i == pair.reference && j == pair.query) continue;
-      const auto supporter = supporters.find({i, j});
-      if (supporter == supporters.end()) continue;
-      const Rigid2 predicted =
-          RelativePose(maps.references, pair.reference, i) * supporter->second *
-          RelativePose(maps.queries, j, pair.query);
-      const Rigid2 error = predicted.Inverse() * pair.T_reference_query;
-      count += error.translation().norm() < options.max_distance_meters &&
-               std::abs(error.rotation()) < options.max_rotation;
-    }
-  }
-  return count;
-}
+// Where the matches are, by the ids of their pairs.
+using MatchIndices = std::map<IdPair, size_t>;
 
 bool IsCertain(const MatchSupportOptions& options, const Match& match) {
   return match.verdict == Verdict::kAccepted &&
@@ -69,6 +33,46 @@ Verdict JudgeWithSupport(const MatchSupportOptions& options,
     return Verdict::kAccepted;
   }
   return match.verdict;
+}
+
+// Calls visit(index, T_reference_query) for each match of submaps around those
+// of `pair`, with where `pair` puts it.
+template <typename Visitor>
+void VisitMatchesAround(const MatchSupportOptions& options,
+                        const NeighbourhoodMaps& maps,
+                        const MatchIndices& indices, const PairPose& pair,
+                        const Visitor& visit) {
+  const std::vector<SubmapId> queries =
+      SubmapsAround(maps.queries, maps.query_links, pair.query,
+                    options.max_index_distance, 1);
+  for (const SubmapId& i :
+       SubmapsAround(maps.references, maps.reference_links, pair.reference,
+                     options.max_index_distance, 1)) {
+    const Rigid2 T_i_query = RelativePose(maps.references, i, pair.reference) *
+                             pair.T_reference_query;
+    for (const SubmapId& j : queries) {
+      if (i == pair.reference && j == pair.query) continue;
+      const Rigid2 T_i_j =
+          T_i_query * RelativePose(maps.queries, pair.query, j);
+      const auto match = indices.find({i, j});
+      if (match != indices.end()) visit(match->second, T_i_j);
+      // Within one map, which of the two is the reference means nothing.
+      if (!maps.min_index_gap || (i == pair.query && j == pair.reference)) {
+        continue;
+      }
+      const auto swapped = indices.find({j, i});
+      if (swapped != indices.end()) visit(swapped->second, T_i_j.Inverse());
+    }
+  }
+}
+
+bool IsWherePredicted(const MatchSupportOptions& options,
+                      const Rigid2& T_reference_query,
+                      const Rigid2& T_reference_predicted) {
+  const Rigid2 T_predicted_query =
+      T_reference_predicted.Inverse() * T_reference_query;
+  return T_predicted_query.translation().norm() < options.max_distance_meters &&
+         std::abs(T_predicted_query.rotation()) < options.max_rotation;
 }
 
 }  // namespace
@@ -94,23 +98,30 @@ void JudgeBySupport(const MatchSupportOptions& options,
                     const NeighbourhoodMaps& maps,
                     std::vector<Match>* const matches) {
   CHECK_EQ(Validate(options), "");
-  Supporters latest;
-  for (Match& match : *matches) {
+  MatchIndices indices;
+  std::vector<size_t> supporting;
+  for (size_t k = 0; k < matches->size(); ++k) {
+    Match& match = (*matches)[k];
+    indices.emplace(IdPair(match.pair.reference, match.pair.query), k);
     match.num_supporting = 0;
-    if (IsCertain(options, match)) Add(maps, match.pair, &latest);
+    if (IsCertain(options, match)) supporting.push_back(k);
   }
-  while (!latest.empty()) {
-    Supporters next;
-    for (Match& match : *matches) {
-      const bool was_supported = *match.num_supporting > 0;
-      *match.num_supporting +=
-          CountSupporters(options, maps, latest, match.pair);
-      if (!was_supported && *match.num_supporting > 0 &&
-          match.verdict == Verdict::kAccepted && !IsCertain(options, match)) {
-        Add(maps, match.pair, &next);
-      }
-    }
-    latest = std::move(next);
+  // Grows, as what is supported supports in its turn.
+  for (size_t next = 0; next < supporting.size(); ++next) {
+    VisitMatchesAround(
+        options, maps, indices, (*matches)[supporting[next]].pair,
+        [&](const size_t k, const Rigid2& T_reference_predicted) {
+          Match& match = (*matches)[k];
+          if (!IsWherePredicted(options, match.pair.T_reference_query,
+                                T_reference_predicted)) {
+            return;
+          }
+          const bool is_first = ++*match.num_supporting == 1;
+          if (is_first && match.verdict == Verdict::kAccepted &&
+              !IsCertain(options, match)) {
+            supporting.push_back(k);
+          }
+        });
   }
   for (Match& match : *matches) {
     match.verdict = JudgeWithSupport(options, match);

@@ -44,7 +44,7 @@ struct MatchSupportOptions {
 // are not certain become kUncertain; those that were kUnlikely, have support
 // and no rival become kAccepted. Nothing supports across a broken link
 // (trajectory_links.h). `maps.own_matches` is not used. Independent of the
-// order of the matches.
+// order of the matches. Linear in their number.
 void JudgeBySupport(const MatchSupportOptions& options,
                     const NeighbourhoodMaps& maps, std::vector<Match>* matches);
 

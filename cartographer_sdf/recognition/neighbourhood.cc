@@ -221,9 +221,9 @@ std::string Validate(const NeighbourhoodOptions& options) {
     return "num_steps must lie between 0 and 10 and index_step between 1 and "
            "100";
   }
-  if (options.max_proposal_distance < 0 ||
-      options.max_proposal_distance > 100) {
-    return "max_proposal_distance must lie between 0 and 100";
+  if (options.max_proposal_index_distance < 0 ||
+      options.max_proposal_index_distance > 100) {
+    return "max_proposal_index_distance must lie between 0 and 100";
   }
   if (options.num_points < 1) return "num_points must be positive";
   if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {

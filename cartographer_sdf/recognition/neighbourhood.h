@@ -78,7 +78,7 @@ struct NeighbourhoodOptions {
   int max_num_rounds = 4;
   // An accepted match also proposes poses to the unmatched pairs of all submaps
   // up to so many indices from its own. 0: to none.
-  int max_proposal_distance = 4;
+  int max_proposal_index_distance = 4;
   NeighbourhoodWeights weights;
   // The neighbourhood raises the score of a pair by at most this, log-odds: it
   // cannot make up for walls that disagree.

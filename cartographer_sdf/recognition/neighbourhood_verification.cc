@@ -102,7 +102,7 @@ class NeighbourhoodVerifier {
         pair.score < options_.min_proposing_score) {
       return;
     }
-    const int distance = options_.max_proposal_distance;
+    const int distance = options_.max_proposal_index_distance;
     for (const SubmapId& i :
          SubmapsAround(maps_.references, maps_.reference_links, pair.reference,
                        distance, 1)) {

@@ -21,7 +21,9 @@
 #include "cartographer_sdf/live/client_guard.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/map_builder.h"
+#include "cartographer_sdf/live/save_state.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/host_messages.h"
 #include "cartographer_sdf/tools/subcommand.h"
 #include "gflags/gflags.h"
 #include "glog/logging.h"
@@ -84,11 +86,7 @@ absl::Status FinishAndSave(mapping::MapBuilderInterface* const map_builder) {
   }
   if (FLAGS_output.empty()) return absl::OkStatus();
   map_builder->pose_graph()->RunFinalOptimization();
-  if (!map_builder->SerializeStateToFile(/*include_unfinished_submaps=*/true,
-                                         FLAGS_output)) {
-    return absl::UnavailableError(absl::StrCat(FLAGS_output, ": not written"));
-  }
-  return absl::OkStatus();
+  return SaveState(FLAGS_output, map_builder);
 }
 
 absl::Status ServeOfFlags(RunRecord* const /*record*/) {
@@ -152,7 +150,9 @@ int main(int argc, char** argv) {
   cartographer_sdf::KeepFreedMemory();
   google::InitGoogleLogging(argc > 0 ? argv[0]
                                      : cartographer_sdf::kServerProgram);
-  FLAGS_logtostderr = true;
+  const cartographer_sdf::HostMessages messages(
+      cartographer_sdf::kServerProgram,
+      [](const google::LogSeverity /*severity*/) { return true; });
   return cartographer_sdf::RunSubcommand(
       cartographer_sdf::ServerCommand(),
       std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));

@@ -24,6 +24,7 @@
 #include "cartographer_sdf/live/log_run.h"
 #include "cartographer_sdf/recording/carmen_log.h"
 #include "cartographer_sdf/tools/flags.h"
+#include "cartographer_sdf/tools/host_messages.h"
 #include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/run_log_report.h"
 #include "cartographer_sdf/tools/subcommand.h"
@@ -49,30 +50,6 @@ namespace cartographer_sdf {
 namespace {
 
 constexpr char kProgram[] = "cartographer_sdf_run_log";
-constexpr size_t kMaxMessageLength = 400;
-
-// Cartographer aborts the process if something is wrong with its files. Such
-// errors deserve one line, not a core dump.
-class MessageSink : public google::LogSink {
- public:
-  void send(const google::LogSeverity severity, const char* const,
-            const char* const file, const int line, const ::tm* const,
-            const char* const message, const size_t length) override {
-    std::string text = OneLine(std::string(message, length));
-    if (text.size() > kMaxMessageLength) {
-      text.resize(kMaxMessageLength);
-      text += "...";
-    }
-    if (severity == google::GLOG_FATAL) {
-      std::cerr << kProgram << ": " << text << std::endl;
-      _exit(1);
-    }
-    if (severity >= google::GLOG_ERROR || FLAGS_verbose) {
-      std::cerr << absl::StrCat(google::GetLogSeverityName(severity), " ", file,
-                                ":", line, "] ", text, "\n");
-    }
-  }
-};
 
 template <typename T>
 std::optional<T> GivenUnless(const T& absent, const T& value) {
@@ -272,16 +249,11 @@ int main(int argc, char** argv) {
   cartographer_sdf::KeepFreedMemory();
   cartographer_sdf::RemovePendingFilesOnSignals();
   google::InitGoogleLogging(argc > 0 ? argv[0] : cartographer_sdf::kProgram);
-  // All messages go only to the sink, not to files.
-  FLAGS_stderrthreshold = google::NUM_SEVERITIES;
-  for (int severity = 0; severity < google::NUM_SEVERITIES; ++severity) {
-    google::SetLogDestination(severity, "");
-  }
-  cartographer_sdf::MessageSink sink;
-  google::AddLogSink(&sink);
-  const int exit_code = cartographer_sdf::RunSubcommand(
+  const cartographer_sdf::HostMessages messages(
+      cartographer_sdf::kProgram, [](const google::LogSeverity severity) {
+        return severity >= google::GLOG_ERROR || FLAGS_verbose;
+      });
+  return cartographer_sdf::RunSubcommand(
       cartographer_sdf::RunLogCommand(),
       std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
-  google::RemoveLogSink(&sink);
-  return exit_code;
 }

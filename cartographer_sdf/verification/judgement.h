@@ -25,6 +25,11 @@ enum class Verdict {
 };
 // "accepted", "too_little_overlap", ...
 [[nodiscard]] const char* VerdictName(Verdict verdict);
+// Whether a match is accepted, or lacks only the support of others, which may
+// come from elsewhere.
+[[nodiscard]] inline bool IsLikely(const Verdict verdict) {
+  return verdict == Verdict::kAccepted || verdict == Verdict::kUncertain;
+}
 
 // The score is linear in these terms. The weights are learned by logistic
 // regression on pairs of submaps of several buildings; see

@@ -310,7 +310,7 @@ TEST(OptionEffectsTest, OfRecognition) {
                 drive.Recognize(generous, places) +
                 drive.Recognize(generous, featureless);
        }},
-      {"neighbourhood.max_proposal_distance", &SpreadMatches},
+      {"neighbourhood.max_proposal_index_distance", &SpreadMatches},
       {"retrieval.",
        [&](const RecognitionOptions& options) {
          RetrievalOptions retrieval = options.retrieval;

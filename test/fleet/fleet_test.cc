@@ -169,6 +169,21 @@ class Client {
 // ours.
 constexpr char kOftenOptimized[] = "POSE_GRAPH.optimize_every_n_nodes = 5\n";
 
+TEST(ServerTest, AFaultOfItsFilesIsAnErrorAndNoCrash) {
+  testing::TemporaryDirectory directory;
+  directory.Write("no_lua.lua", "return {");
+  for (const char* const basename : {"absent.lua", "no_lua.lua"}) {
+    const pid_t server =
+        Spawn({TEST_GRPC_SERVER_PROGRAM,
+               absl::StrCat("--configuration_basename=", basename),
+               "--configuration_directory=" + directory.path()});
+    int status = 0;
+    waitpid(server, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status)) << basename;
+    EXPECT_EQ(WEXITSTATUS(status), 1) << basename;
+  }
+}
+
 TEST(FleetTest, RobotsWithoutACommonFrameAreJoined) {
   Server server(kOftenOptimized);
   const std::vector<Rigid2>& all = TheDrivenOffice().poses;

@@ -8,11 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "cartographer_sdf/execution/parallel_for.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/corridor_map.h"
-#include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::match_support_test {
 namespace {
@@ -153,14 +151,10 @@ TEST(JudgeBySupportTest, OtherReasonsForRefusalStay) {
 }
 
 TEST(JudgeBySupportTest, NothingSupportsAcrossABrokenLink) {
-  const testing::TwoVisits visits;
-  const testing::SlippedVisit slipped(visits);
-  const TrajectoryLinks links(TrajectoryLinkOptions(), VerificationOptions(),
-                              slipped.Places(), MakeExecutor(1));
+  const TrajectoryLinks links = testing::LinksBrokenAtTen();
   const CorridorMap corridor;
   NeighbourhoodMaps maps = corridor.Between();
   maps.reference_links = &links;
-  // From submap 10 to 12 of the trajectory.
   EXPECT_THAT(
       Verdicts(maps, {AcceptedMatch(10, 2, kSame, 8.),
                       Unlikely(12, 4, kSame, 3.), Unlikely(8, 0, kSame, 3.)}),

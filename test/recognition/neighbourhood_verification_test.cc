@@ -176,9 +176,9 @@ TEST(VerifyNeighbourhoodsTest, AcceptedMatchesProposeToAllPairsAroundThem) {
         .size();
   };
   // The east rooms are two indices on.
-  options.max_proposal_distance = 2;
+  options.max_proposal_index_distance = 2;
   EXPECT_EQ(num_matches(), 2u);
-  options.max_proposal_distance = 1;
+  options.max_proposal_index_distance = 1;
   EXPECT_EQ(num_matches(), 1u);
 }
 

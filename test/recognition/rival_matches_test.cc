@@ -9,11 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "cartographer_sdf/execution/parallel_for.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "test/testing/corridor_map.h"
-#include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::rival_matches_test {
 namespace {
@@ -143,14 +141,10 @@ TEST(RefuseRivalMatchesTest, WhatIsLeftOfTheScoreMustSuffice) {
 }
 
 TEST(RefuseRivalMatchesTest, AnythingMayLieBeyondABrokenLink) {
-  const testing::TwoVisits visits;
-  const testing::SlippedVisit slipped(visits);
-  const TrajectoryLinks links(TrajectoryLinkOptions(), VerificationOptions(),
-                              slipped.Places(), MakeExecutor(1));
+  const TrajectoryLinks links = testing::LinksBrokenAtTen();
   const CorridorMap corridor;
   NeighbourhoodMaps maps = corridor.Between();
   maps.reference_links = &links;
-  // From submap 10 to 12 of the trajectory.
   EXPECT_THAT(IsAccepted(maps, {AcceptedMatch(5, 0, Rigid2(), 6.),
                                 AcceptedMatch(15, 0, Rigid2(), 6.)}),
               ElementsAre(true, true));

@@ -9,9 +9,12 @@
 #include <map>
 #include <optional>
 
+#include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
+#include "cartographer_sdf/recognition/trajectory_links.h"
+#include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::testing {
 
@@ -44,6 +47,14 @@ inline Match AcceptedMatch(const int reference, const int query,
   match.pair = {{0, reference}, {0, query}, pose, score};
   match.verdict = Verdict::kAccepted;
   return match;
+}
+
+// Those of a trajectory whose link from submap 10 to 12 is broken.
+inline TrajectoryLinks LinksBrokenAtTen() {
+  const TwoVisits visits;
+  const SlippedVisit slipped(visits);
+  return TrajectoryLinks(TrajectoryLinkOptions(), VerificationOptions(),
+                         slipped.Places(), MakeExecutor(1));
 }
 
 }  // namespace cartographer_sdf::testing
