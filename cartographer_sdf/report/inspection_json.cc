@@ -197,6 +197,8 @@ class PathWriter {
     Json json = Json::array();
     for (const auto& [trajectory, path] : ids) {
       json.push_back(WritePath(trajectory, path));
+      json.back()["color"] =
+          ColorText(CategoryColor(static_cast<int>(json.size()) - 1));
     }
     return json;
   }

@@ -31,7 +31,8 @@ constexpr Color kBlack{0., 0., 0.};
 
 [[nodiscard]] Color Mix(const Color& a, const Color& b, double fraction_of_b);
 
-// Colours that are easy to distinguish, also with colour blindness; they
+// Colours that are easy to distinguish, also with colour blindness, and that
+// stand out from white by a contrast of at least 3 (WCAG 2.1, 1.4.11); they
 // repeat.
 [[nodiscard]] Color CategoryColor(int category);
 

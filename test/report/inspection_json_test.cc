@@ -61,6 +61,7 @@ TEST(InspectionJsonTest, HasTheMapInOneFrame) {
   EXPECT_EQ(DecodePng(png).width, second["picture"]["width"]);
   ASSERT_EQ(json["paths"].size(), 2u);
   EXPECT_EQ(json["paths"][1]["seconds"], Json({0., 5.}));
+  EXPECT_NE(json["paths"][0]["color"], json["paths"][1]["color"]);
   EXPECT_EQ(json["paths"][1]["positions"][0], Json({{9., 0.25}, {9.5, 0.25}}));
   EXPECT_EQ(json["paths"][1]["positions"][1], Json({{4.1, 0.25}, {4.6, 0.25}}));
 }

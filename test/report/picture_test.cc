@@ -3,6 +3,8 @@
 
 #include "cartographer_sdf/report/picture.h"
 
+#include <cmath>
+
 #include "gtest/gtest.h"
 #include "test/testing/decoded_png.h"
 
@@ -87,6 +89,21 @@ TEST(ColorTest, CategoriesRepeatAndMixInterpolates) {
   EXPECT_EQ(CategoryColor(-1).red, CategoryColor(5).red);
   EXPECT_NE(CategoryColor(0).red, CategoryColor(1).red);
   EXPECT_DOUBLE_EQ(Mix(kWhite, kRed, 0.25).green, 0.75);
+}
+
+// WCAG 2.1.
+double Luminance(const Color& color) {
+  const auto linear = [](const double part) {
+    return part <= 0.03928 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(color.red) + 0.7152 * linear(color.green) +
+         0.0722 * linear(color.blue);
+}
+
+TEST(ColorTest, CategoriesStandOutFromWhite) {
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_GE(1.05 / (Luminance(CategoryColor(k)) + 0.05), 3.) << k;
+  }
 }
 
 }  // namespace

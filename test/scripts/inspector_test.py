@@ -46,8 +46,9 @@ BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 OFFICE = ("--plan_width", "30", "--plan_height", "26")
 WIDE, NARROW = 1400, 400
 MAX_LOAD_SECONDS = 60.
-# WCAG 2.1, 1.4.3 (AA).
+# WCAG 2.1 (AA), 1.4.3 for texts and 1.4.11 for what is drawn.
 MIN_CONTRAST = 4.5
+MIN_DRAWN_CONTRAST = 3.
 
 
 def run(*arguments, exit_code=0):
@@ -239,6 +240,38 @@ class InspectorTest(unittest.TestCase):
                     self.assertGreaterEqual(contrast(color[text], color[ground]), MIN_CONTRAST,
                                             f"{scheme}: {text} on {ground}")
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+    def test_what_is_drawn_stands_out(self):
+        # Of each key of the legend, the colours that are opaque.
+        opaque = """
+            return [...document.querySelectorAll('canvas.key')].map((c) => {
+              const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+              const colors = new Set();
+              for (let i = 0; i < d.length; i += 4) {
+                if (d[i + 3] === 255) {
+                  colors.add('#' + [d[i], d[i + 1], d[i + 2]].map(
+                    (part) => part.toString(16).padStart(2, '0')).join(''));
+                }
+              }
+              return [c.parentElement.textContent, [...colors]];
+            })"""
+        for report in ("close_loops", "audit", "merge"):
+            self.show(report)
+            if self.rows():
+                self.click(self.rows()[0])
+            keys = self.script(opaque)
+            self.assertGreater(len(keys), 2, report)
+            for words, colors in keys:
+                self.assertGreaterEqual(max(contrast(one, other) for one in colors
+                                            for other in colors), MIN_DRAWN_CONTRAST, words)
+            page, begin, end = document_of(report)
+            document = json.loads(page[begin:end])
+            for color in [part["color"] for part in document["sessions"] + document["paths"]]:
+                self.assertGreaterEqual(contrast(color, "#ffffff"), MIN_DRAWN_CONTRAST)
+            # Free space and what was never seen.
+            unknown = self.script("return getComputedStyle(document.documentElement)"
+                                  ".getPropertyValue('--unknown')").strip()
+            self.assertGreaterEqual(contrast(unknown, "#ffffff"), MIN_DRAWN_CONTRAST)
 
     def test_without_javascript_the_main_things_are_there(self):
         self.driver.execute_cdp_cmd("Emulation.setScriptExecutionDisabled", {"value": True})

@@ -45,16 +45,30 @@ function apply(a, [x, y]) {
 // --- Colours: Okabe and Ito; shapes and dashes say the same. ---
 
 const TONE_COLORS = {good: "#0072b2", neutral: "#5b6570", caution: "#b36b00", bad: "#c23b00"};
-const CATEGORIES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 const PHASES = {
   searching: {color: "#d55e00", dash: [7, 5]},
   located: {color: "#0072b2", dash: []},
   lost: {color: "#8a2be2", dash: [2, 4]}};
+const PAPER = "#ffffff", INK = "#1b1f24";
 const DASHES = [[], [8, 4], [2, 4], [10, 3, 2, 3]];
+// Another dash where the colours of paths begin again.
+const dashOf = (number) => DASHES[
+  run.paths.slice(0, number).filter((path) => path.color === run.paths[number].color).length % DASHES.length];
 const REFERENCE = [13, 59, 140], QUERY = [196, 78, 0], BOTH = [26, 26, 26], CONFLICT = [204, 0, 170];
 // Cividis, from dark to light.
 const SCALE = ["#00204d", "#31446b", "#666970", "#958f78", "#cab969", "#ffea46"];
-const rgb = ([r, g, b]) => `rgb(${r} ${g} ${b})`;
+const hex = (parts) => `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+// Relative luminance of "#rrggbb" (WCAG 2.1).
+function luminance(color) {
+  const [r, g, b] = [1, 3, 5].map((k) => {
+    const part = parseInt(color.slice(k, k + 2), 16) / 255;
+    return part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+// What a line of this colour is edged with: it stands out from its edge, and so
+// from any ground.
+const edgeOf = (color) => luminance(color) < 0.3 ? PAPER : INK;
 const scaleColor = (fraction) =>
   SCALE[Math.min(SCALE.length - 1, Math.max(0, Math.floor(fraction * SCALE.length)))];
 
@@ -275,7 +289,7 @@ function drawPictures(context, k) {
 }
 
 function strokePath(context, points, color, dash, width) {
-  for (const [style, extra, pattern] of [["rgb(255 255 255 / .75)", 2, []], [color, 0, dash]]) {
+  for (const [style, extra, pattern] of [[edgeOf(color), 2, []], [color, 0, dash]]) {
     context.beginPath();
     points.forEach(([x, y], k) => (k === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
     context.strokeStyle = style;
@@ -307,7 +321,7 @@ function drawPaths(context, k) {
   run.paths.forEach((path, number) => {
     if (!shown.sessions[path.session]) return;
     const longest = Math.max(1, path.seconds[path.seconds.length - 1]);
-    const plain = {color: CATEGORIES[number % CATEGORIES.length], dash: DASHES[Math.floor(number / CATEGORIES.length) % 4]};
+    const plain = {color: path.color, dash: dashOf(number)};
     const lookOf = (n) => {
       if (shown.pathColor === "time") return {color: scaleColor(path.seconds[n] / longest), dash: []};
       if (shown.pathColor === "state" && path.phases.length > 0) {
@@ -320,9 +334,9 @@ function drawPaths(context, k) {
     }
     const ends = path.positions[k].filter((position) => position);
     if (ends.length === 0) return;
-    const look = lookOf(path.seconds.length - 1);
-    dot(context, toScreen(ends[0]), 4, "#ffffff", look.color);
-    dot(context, toScreen(ends[ends.length - 1]), 4, look.color, "#ffffff");
+    const {color} = lookOf(path.seconds.length - 1);
+    dot(context, toScreen(ends[0]), 4, edgeOf(color), color);
+    dot(context, toScreen(ends[ends.length - 1]), 4, color, edgeOf(color));
   });
 }
 function dot(context, [x, y], radius, fill, outline) {
@@ -347,7 +361,7 @@ function mark(context, [x, y], tone, size) {
     context.lineTo(x - 1.15 * size, y + size);
     context.closePath();
   } else if (tone === "bad") {
-    for (const [width, style] of [[5, "#ffffff"], [2.8, color]]) {
+    for (const [width, style] of [[5, PAPER], [2.8, color]]) {
       context.beginPath();
       context.moveTo(x - size, y - size);
       context.lineTo(x + size, y + size);
@@ -361,10 +375,10 @@ function mark(context, [x, y], tone, size) {
   } else {
     context.rect(x - 0.8 * size, y - 0.8 * size, 1.6 * size, 1.6 * size);
   }
-  context.fillStyle = tone === "neutral" ? "#ffffff" : color;
+  context.fillStyle = tone === "neutral" ? PAPER : color;
   context.fill();
   context.lineWidth = 1.5;
-  context.strokeStyle = tone === "neutral" ? color : "#ffffff";
+  context.strokeStyle = tone === "neutral" ? color : PAPER;
   context.stroke();
 }
 function drawRow(context, row, k, size) {
@@ -393,7 +407,7 @@ function drawErrors(context, k) {
     const error = submap.mean_errors[k];
     if (!pose || !shown.sessions[submap.session] || (error === null && !submap.flaw)) continue;
     const point = toScreen(apply(pose, centreOf(submap)));
-    if (error !== null) dot(context, point, 4 + 8 * Math.min(1, error / largest), scaleColor(error / largest), "#ffffff");
+    if (error !== null) dot(context, point, 4 + 8 * Math.min(1, error / largest), scaleColor(error / largest), edgeOf(scaleColor(error / largest)));
     if (submap.flaw) text(context, "! torn", [point[0] + 8, point[1] - 8], "#c23b00");
   }
 }
@@ -412,7 +426,7 @@ function text(context, words, [x, y], color) {
   context.font = "600 13px system-ui, sans-serif";
   context.lineWidth = 4;
   context.lineJoin = "round";
-  context.strokeStyle = "#ffffff";
+  context.strokeStyle = PAPER;
   context.strokeText(words, x, y);
   context.fillStyle = color;
   context.fillText(words, x, y);
@@ -422,7 +436,7 @@ function drawArrow(context, row, isStrong) {
   const length = Math.max(26, 1.2 * view.scale) / view.scale;
   const at = (x, y) => toScreen(apply(pose, [x * length, y * length]));
   const color = TONE_COLORS[row.state.tone];
-  for (const [width, style] of [[isStrong ? 9 : 6, "#ffffff"], [isStrong ? 5 : 2.5, color]]) {
+  for (const [width, style] of [[isStrong ? 9 : 6, PAPER], [isStrong ? 5 : 2.5, color]]) {
     context.beginPath();
     context.moveTo(...at(0, 0));
     context.lineTo(...at(1, 0));
@@ -437,7 +451,7 @@ function drawArrow(context, row, isStrong) {
   }
   context.setLineDash([]);
   context.lineCap = "butt";
-  dot(context, at(0, 0), isStrong ? 6 : 4, color, "#ffffff");
+  dot(context, at(0, 0), isStrong ? 6 : 4, color, PAPER);
   const [x, y] = at(0, 0);
   text(context, labelOfCandidate(row), [x + 9, y - 9], color);
 }
@@ -500,7 +514,7 @@ function drawPointed(context, k) {
       const [x, y] = toScreen(place);
       context.beginPath();
       context.arc(x, y, 15, 0, 2 * Math.PI);
-      for (const [width, style] of [[5, "#ffffff"], [2.5, "#1b1f24"]]) {
+      for (const [width, style] of [[5, PAPER], [2.5, INK]]) {
         context.lineWidth = width;
         context.strokeStyle = style;
         context.stroke();
@@ -539,27 +553,27 @@ function roundLength(length) {
 function drawScale(context) {
   const length = roundLength(Math.min(160, 0.35 * view.width) / view.scale);
   const pixels = length * view.scale, x = 14, y = view.height - 14;
-  context.fillStyle = "#ffffff";
+  context.fillStyle = PAPER;
   context.fillRect(x - 3, y - 5, pixels + 6, 10);
-  context.fillStyle = "#1b1f24";
+  context.fillStyle = INK;
   context.fillRect(x, y - 2, pixels, 4);
-  text(context, length >= 1 ? `${length} m` : `${Math.round(100 * length)} cm`, [x, y - 9], "#1b1f24");
+  text(context, length >= 1 ? `${length} m` : `${Math.round(100 * length)} cm`, [x, y - 9], INK);
 }
 function dividerX() { return view.width * map.wipe / 100; }
 function drawDivider(context) {
   if (states.length < 2) return;
   const x = dividerX();
-  if (map.wipe > 12) text(context, states[0].label, [12, 22], "#1b1f24");
+  if (map.wipe > 12) text(context, states[0].label, [12, 22], INK);
   if (map.wipe < 88) {
     const words = states[lastState].label;
-    text(context, words, [Math.max(x + 10, 12), 22], "#1b1f24");
+    text(context, words, [Math.max(x + 10, 12), 22], INK);
   }
   if (map.wipe <= 0 || map.wipe >= 100) return;
-  context.fillStyle = "#ffffff";
+  context.fillStyle = PAPER;
   context.fillRect(x - 2.5, 0, 5, view.height);
   context.fillStyle = "#005f99";
   context.fillRect(x - 1, 0, 2, view.height);
-  dot(context, [x, view.height / 2], 11, "#005f99", "#ffffff");
+  dot(context, [x, view.height / 2], 11, "#005f99", PAPER);
   text(context, "\u2194", [x - 7, view.height / 2 + 5], "#005f99");
 }
 function drawNow() {
@@ -725,8 +739,10 @@ function group(name, ...boxes) {
   byId("layers").append(make("fieldset", {}, make("legend", {}, name), ...boxes));
 }
 const swatch = (color) => keyOf((context) => {
+  context.fillStyle = edgeOf(color);
+  context.fillRect(1, 1, 16, 16);
   context.fillStyle = color;
-  context.fillRect(2, 2, 14, 14);
+  context.fillRect(2.5, 2.5, 13, 13);
 });
 function listSessions() {
   if (run.sessions.length < 2) return;
@@ -1094,7 +1110,7 @@ async function drawPair(row, picture, area) {
 function pairLegend(row) {
   const entries = [[REFERENCE, `wall of ${shortName(row.reference)}`], [QUERY, `wall of ${shortName(row.query)}`],
                    [BOTH, "wall of both"], [CONFLICT, "wall in free space of the other, drawn larger"]];
-  return make("div", {class: "legend"}, ...entries.map(([color, words]) => make("span", {}, swatch(rgb(color)), words)));
+  return make("div", {class: "legend"}, ...entries.map(([color, words]) => make("span", {}, swatch(hex(color)), words)));
 }
 
 // Samples both pictures in the frame of the reference. Cells: the class of the
@@ -1169,7 +1185,7 @@ function paintOverlay(overlay, picture, look) {
   }
   context.putImageData(pixels, 0, 0);
   if (look !== "both") return;
-  context.fillStyle = rgb(CONFLICT);
+  context.fillStyle = hex(CONFLICT);
   for (const [u, v] of overlay.conflicts) context.fillRect(u - 1, v - 1, 3, 3);
 }
 
@@ -1199,7 +1215,7 @@ function paintCandidate(picture, pose) {
   drawEchoes(context, pose, project, 3);
   const tip = project(apply(pose, [reach / 8, 0]));
   strokePath(context, [project([pose.x, pose.y]), tip], "#0072b2", [], 4);
-  dot(context, project([pose.x, pose.y]), 6, "#0072b2", "#ffffff");
+  dot(context, project([pose.x, pose.y]), 6, "#0072b2", PAPER);
 }
 
 // --- All together. ---
