@@ -58,8 +58,8 @@ const REFERENCE = [13, 59, 140], QUERY = [196, 78, 0], BOTH = [26, 26, 26], CONF
 // Cividis, from dark to light.
 const SCALE = ["#00204d", "#31446b", "#666970", "#958f78", "#cab969", "#ffea46"];
 const hex = (parts) => `#${parts.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
-// Relative luminance of "#rrggbb" (WCAG 2.1).
-function luminance(color) {
+// Of "#rrggbb", as WCAG 2.1 defines it.
+function brightnessOf(color) {
   const [r, g, b] = [1, 3, 5].map((k) => {
     const part = parseInt(color.slice(k, k + 2), 16) / 255;
     return part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
@@ -68,7 +68,7 @@ function luminance(color) {
 }
 // What a line of this colour is edged with: it stands out from its edge, and so
 // from any ground.
-const edgeOf = (color) => luminance(color) < 0.3 ? PAPER : INK;
+const edgeOf = (color) => brightnessOf(color) < 0.3 ? PAPER : INK;
 const scaleColor = (fraction) =>
   SCALE[Math.min(SCALE.length - 1, Math.max(0, Math.floor(fraction * SCALE.length)))];
 
