@@ -333,7 +333,8 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- A match and one that supports it are at most so many submaps apart, on
         -- either side. Larger: supports more, and relies on more odometry.
         max_index_distance = 4,
-        -- [m], [rad] How near a match must be to where the other puts it.
+        -- [m], [rad] How near a match must be to where the other puts it. Beyond
+        -- half as much again, and drift, the other opposes it.
         max_distance_meters = 0.5,
         max_rotation = 0.1,
       },

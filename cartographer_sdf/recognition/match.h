@@ -78,9 +78,10 @@ struct Match {
   std::optional<NeighbourhoodEvidence> neighbourhood;
   // Another match that excludes this one is about as likely (rival_matches.h).
   bool has_rival = false;
-  // Matches that support it (match_support.h). Absent if they were not looked
-  // for.
+  // Matches that support it, and that oppose it (match_support.h). Absent if
+  // they were not looked for.
   std::optional<int> num_supporting;
+  std::optional<int> num_opposing;
 };
 
 // Finds the poses in which a place resembles itself, by matching it with

@@ -13,6 +13,16 @@
 namespace cartographer_sdf {
 namespace {
 
+// A match opposes those that lie this far, in units of what support allows,
+// from where it puts them, and what local SLAM may have drifted on the way, as
+// a fraction of it and in rotation [rad / sqrt(m)].
+constexpr double kOpposingDistance = 1.5;
+constexpr double kDriftPerMeter = 0.01;
+constexpr double kRotationDriftPerSqrtMeter = 0.01;
+// So many times as many as support a match must oppose it to refuse it: what
+// opposes may be wrong as well, or a submap between bent.
+constexpr int kOutvotingRatio = 2;
+
 // Where the matches are, by the ids of their pairs.
 using MatchIndices = std::map<IdPair, size_t>;
 
@@ -24,19 +34,33 @@ bool IsCertain(const MatchSupportOptions& options, const Match& match) {
 Verdict JudgeWithSupport(const MatchSupportOptions& options,
                          const Match& match) {
   const bool is_supported = *match.num_supporting > 0;
-  if (match.verdict == Verdict::kAccepted && !is_supported &&
-      !IsCertain(options, match)) {
+  const bool is_outvoted =
+      *match.num_opposing > kOutvotingRatio * *match.num_supporting;
+  if (match.verdict == Verdict::kAccepted &&
+      (is_outvoted || (!is_supported && !IsCertain(options, match)))) {
     return Verdict::kUncertain;
   }
-  if (match.verdict == Verdict::kUnlikely && is_supported && !match.has_rival &&
-      match.pair.score >= options.min_supported_score) {
+  if (match.verdict == Verdict::kUnlikely && is_supported && !is_outvoted &&
+      !match.has_rival && match.pair.score >= options.min_supported_score) {
     return Verdict::kAccepted;
   }
   return match.verdict;
 }
 
-// Calls visit(index, T_reference_query) for each match of submaps around those
-// of `pair`, with where `pair` puts it.
+// Where a match puts a pair of submaps around its own.
+struct Prediction {
+  Rigid2 T_reference_query;
+  double way;  // driven between, on both sides [m]
+};
+
+double WayBetween(const TrajectoryPlaces& map, const SubmapId& a,
+                  const SubmapId& b) {
+  return std::abs(map.odometry->at(a).distance_driven -
+                  map.odometry->at(b).distance_driven);
+}
+
+// Calls visit(index, prediction) for each match of submaps around those of
+// `pair`, with where `pair` puts it.
 template <typename Visitor>
 void VisitMatchesAround(const MatchSupportOptions& options,
                         const NeighbourhoodMaps& maps,
@@ -54,25 +78,41 @@ void VisitMatchesAround(const MatchSupportOptions& options,
       if (i == pair.reference && j == pair.query) continue;
       const Rigid2 T_i_j =
           T_i_query * RelativePose(maps.queries, pair.query, j);
+      const double way = WayBetween(maps.references, pair.reference, i) +
+                         WayBetween(maps.queries, pair.query, j);
       const auto match = indices.find({i, j});
-      if (match != indices.end()) visit(match->second, T_i_j);
+      if (match != indices.end()) visit(match->second, Prediction{T_i_j, way});
       // Within one map, which of the two is the reference means nothing.
       if (!maps.min_index_gap || (i == pair.query && j == pair.reference)) {
         continue;
       }
       const auto swapped = indices.find({j, i});
-      if (swapped != indices.end()) visit(swapped->second, T_i_j.Inverse());
+      if (swapped != indices.end()) {
+        visit(swapped->second, Prediction{T_i_j.Inverse(), way});
+      }
     }
   }
 }
 
-bool IsWherePredicted(const MatchSupportOptions& options,
-                      const Rigid2& T_reference_query,
-                      const Rigid2& T_reference_predicted) {
+// How a match judges another by where it puts it.
+enum class Vote { kSupports, kNeither, kOpposes };
+
+Vote VoteFor(const MatchSupportOptions& options, const Prediction& prediction,
+             const Rigid2& T_reference_query) {
   const Rigid2 T_predicted_query =
-      T_reference_predicted.Inverse() * T_reference_query;
-  return T_predicted_query.translation().norm() < options.max_distance_meters &&
-         std::abs(T_predicted_query.rotation()) < options.max_rotation;
+      prediction.T_reference_query.Inverse() * T_reference_query;
+  const double distance = T_predicted_query.translation().norm();
+  const double rotation = std::abs(T_predicted_query.rotation());
+  if (distance < options.max_distance_meters &&
+      rotation < options.max_rotation) {
+    return Vote::kSupports;
+  }
+  const bool opposes =
+      distance > kOpposingDistance * options.max_distance_meters +
+                     kDriftPerMeter * prediction.way ||
+      rotation > kOpposingDistance * options.max_rotation +
+                     kRotationDriftPerSqrtMeter * std::sqrt(prediction.way);
+  return opposes ? Vote::kOpposes : Vote::kNeither;
 }
 
 }  // namespace
@@ -104,18 +144,19 @@ void JudgeBySupport(const MatchSupportOptions& options,
     Match& match = (*matches)[k];
     indices.emplace(IdPair(match.pair.reference, match.pair.query), k);
     match.num_supporting = 0;
+    match.num_opposing = 0;
     if (IsCertain(options, match)) supporting.push_back(k);
   }
   // Grows, as what is supported supports in its turn.
   for (size_t next = 0; next < supporting.size(); ++next) {
     VisitMatchesAround(
         options, maps, indices, (*matches)[supporting[next]].pair,
-        [&](const size_t k, const Rigid2& T_reference_predicted) {
+        [&](const size_t k, const Prediction& prediction) {
           Match& match = (*matches)[k];
-          if (!IsWherePredicted(options, match.pair.T_reference_query,
-                                T_reference_predicted)) {
-            return;
-          }
+          const Vote vote =
+              VoteFor(options, prediction, match.pair.T_reference_query);
+          if (vote == Vote::kOpposes) ++*match.num_opposing;
+          if (vote != Vote::kSupports) return;
           const bool is_first = ++*match.num_supporting == 1;
           if (is_first && match.verdict == Verdict::kAccepted &&
               !IsCertain(options, match)) {

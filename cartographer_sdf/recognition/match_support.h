@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Matches that support each other. A match that is certain by itself tells, by
-// local SLAM on either side, where the submaps around its own lie in each
-// other. A match of two of them that lies there and is only likely is right as
-// well, and supports others in its turn; one without support has to be certain
-// itself.
+// Matches that support or oppose each other. A match that is certain by itself
+// tells, by local SLAM on either side, where the submaps around its own lie in
+// each other. A match of two of them that lies there and is only likely is
+// right as well, and supports others in its turn; one without support has to be
+// certain itself. One that lies farther off than local SLAM drifts is opposed,
+// and refused if far more matches oppose than support it, however certain it
+// is: shifts by one rack or one door agree with the walls and disagree with
+// what lies around.
 //
 // One threshold for all could not do both. In noisy maps and outdoors, most
 // right matches are only likely, but near some that are certain. Between
@@ -35,16 +38,20 @@ struct MatchSupportOptions {
   int max_index_distance = 4;
   // A match supports another if the pose that it predicts for the query of the
   // other is this near [m], [rad]. Local SLAM drifts less on so short a way.
+  // Beyond one and a half times that, and a hundredth of the way between them,
+  // it opposes it.
   double max_distance_meters = 0.5;
   double max_rotation = 0.1;
 };
 [[nodiscard]] std::string Validate(const MatchSupportOptions& options);
 
-// Sets Match::num_supporting. Matches that were accepted, have no support and
-// are not certain become kUncertain; those that were kUnlikely, have support
-// and no rival become kAccepted. Nothing supports across a broken link
-// (trajectory_links.h). `maps.own_matches` is not used. Independent of the
-// order of the matches. Linear in their number.
+// Sets Match::num_supporting and num_opposing. Matches that were accepted and
+// are opposed by more than twice as many as support them, or have no support
+// and are not certain, become kUncertain; those that were kUnlikely, have
+// support, are not opposed by so many, and have no rival become kAccepted.
+// Nothing supports or opposes across a broken link (trajectory_links.h).
+// `maps.own_matches` is not used. Independent of the order of the matches.
+// Linear in their number.
 void JudgeBySupport(const MatchSupportOptions& options,
                     const NeighbourhoodMaps& maps, std::vector<Match>* matches);
 

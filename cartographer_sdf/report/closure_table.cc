@@ -144,7 +144,10 @@ std::vector<Measure> MatchMeasures(const JudgementOptions& judgement,
        "their probability."},
       {"supporting", "supporting matches", "", 0,
        "Certain matches of submaps around these that put them where this one "
-       "does. A score that is not certain needs one."}};
+       "does. A score that is not certain needs one."},
+      {"opposing", "opposing matches", "", 0,
+       "Certain matches of submaps around these that put them elsewhere. More "
+       "than twice as many as support the match refuse it."}};
 }
 
 std::vector<std::optional<double>> MatchValues(const Match& match) {
@@ -167,7 +170,8 @@ std::vector<std::optional<double>> MatchValues(const Match& match) {
           static_cast<double>(match.inliers.size()),
           of_neighbours(&NeighbourhoodEvidence::num_confirming),
           of_neighbours(&NeighbourhoodEvidence::num_refuting),
-          match.num_supporting};
+          match.num_supporting,
+          match.num_opposing};
 }
 
 std::vector<RowStatus> RefusalStatuses(const std::string& path) {

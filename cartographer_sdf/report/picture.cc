@@ -47,8 +47,8 @@ Color Mix(const Color& a, const Color& b, const double fraction_of_b) {
 }
 
 Color CategoryColor(const int category) {
-  // Okabe and Ito, "Color universal design", 2008, without black and yellow; the
-  // last three darker, so that they stand out from white by 3 to 1.
+  // Okabe and Ito, "Color universal design", 2008, without black and yellow;
+  // the last three darker, so that they stand out from white by 3 to 1.
   static constexpr std::array<Color, 6> kColors = {{{0.00, 0.45, 0.70, 1.},
                                                     {0.84, 0.37, 0.00, 1.},
                                                     {0.00, 0.62, 0.45, 1.},

@@ -19,7 +19,7 @@ enum class Verdict {
   kTooLittleOverlap,  // both observed too little in common
   kContradicted,      // walls of one stand in free space of the other
   kUnlikely,          // too little agreement
-  kUncertain,         // likely, but no certain match supports it
+  kUncertain,         // likely, but certain matches do not support it
   kDegenerate,        // walls face one way: the pose could slide along them
   kAmbiguous,         // another pose is as good
 };

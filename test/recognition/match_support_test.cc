@@ -103,6 +103,55 @@ TEST(JudgeBySupportTest, OnlyWhatLiesWhereItIsPredictedIsSupported) {
   EXPECT_EQ(verdict_at(Rigid2(10., 0., 0.)), "unlikely");
 }
 
+TEST(JudgeBySupportTest, ManyThatPutItElsewhereRefuseACertainMatch) {
+  const CorridorMap corridor;
+  // 20 m were driven between, ten on either side: 0.2 m and 0.045 rad of drift.
+  for (const NeighbourhoodMaps& maps :
+       {corridor.Within(), corridor.Between()}) {
+    const auto verdict_at = [&maps](const Rigid2& pose) {
+      return Verdicts(maps, {AcceptedMatch(1, 11, kSame, 8.),
+                             AcceptedMatch(2, 12, pose, 9.),
+                             AcceptedMatch(3, 13, kSame, 8.)})[1];
+    };
+    EXPECT_EQ(verdict_at(Rigid2(0.94, 0., 0.)), "accepted");
+    EXPECT_EQ(verdict_at(Rigid2(0.96, 0., 0.)), "uncertain");
+    EXPECT_EQ(verdict_at(Rigid2(0., 0., 0.19)), "accepted");
+    EXPECT_EQ(verdict_at(Rigid2(0., 0., 0.2)), "uncertain");
+    EXPECT_EQ(verdict_at(Rigid2(0., 0., M_PI)), "uncertain");
+  }
+}
+
+TEST(JudgeBySupportTest, UpToTwiceAsManyAgainstAsForItDoNotRefuseAMatch) {
+  const CorridorMap corridor;
+  const Rigid2 shifted(10., 0., 0.);
+  EXPECT_THAT(Verdicts(corridor.Within(), {AcceptedMatch(1, 11, kSame, 8.),
+                                           AcceptedMatch(2, 12, kSame, 8.),
+                                           AcceptedMatch(3, 13, shifted, 8.)}),
+              ElementsAre("accepted", "accepted", "uncertain"));
+  EXPECT_THAT(Verdicts(corridor.Within(), {AcceptedMatch(1, 11, kSame, 8.),
+                                           AcceptedMatch(2, 12, kSame, 8.),
+                                           AcceptedMatch(3, 13, shifted, 8.),
+                                           AcceptedMatch(4, 14, shifted, 8.)}),
+              ElementsAre("accepted", "accepted", "accepted", "accepted"));
+  // Nothing tells which of two is right.
+  EXPECT_THAT(Verdicts(corridor.Within(), {AcceptedMatch(1, 11, kSame, 8.),
+                                           AcceptedMatch(2, 12, shifted, 12.)}),
+              ElementsAre("uncertain", "uncertain"));
+}
+
+TEST(JudgeBySupportTest, WhatIsOutvotedIsNotAcceptedForItsSupport) {
+  const CorridorMap corridor;
+  const Rigid2 shifted(10., 0., 0.);
+  std::vector<Match> matches = {
+      AcceptedMatch(0, 10, kSame, 8.), AcceptedMatch(1, 11, shifted, 8.),
+      AcceptedMatch(3, 13, shifted, 8.), AcceptedMatch(4, 14, shifted, 8.),
+      Unlikely(2, 12, kSame, 3.)};
+  JudgeBySupport(MatchSupportOptions(), corridor.Within(), &matches);
+  EXPECT_EQ(matches[4].num_supporting, 1);
+  EXPECT_EQ(matches[4].num_opposing, 3);
+  EXPECT_EQ(matches[4].verdict, Verdict::kUnlikely);
+}
+
 TEST(JudgeBySupportTest, FarOnesDoNotSupport) {
   const CorridorMap corridor;
   EXPECT_THAT(Verdicts(corridor.Within(), {AcceptedMatch(0, 10, kSame, 8.),
@@ -159,6 +208,10 @@ TEST(JudgeBySupportTest, NothingSupportsAcrossABrokenLink) {
       Verdicts(maps, {AcceptedMatch(10, 2, kSame, 8.),
                       Unlikely(12, 4, kSame, 3.), Unlikely(8, 0, kSame, 3.)}),
       ElementsAre("accepted", "unlikely", "accepted"));
+  // Nor does it oppose.
+  EXPECT_THAT(Verdicts(maps, {AcceptedMatch(10, 2, kSame, 8.),
+                              AcceptedMatch(12, 4, Rigid2(5., 0., 0.), 8.)}),
+              ElementsAre("accepted", "accepted"));
 }
 
 TEST(JudgeBySupportTest, IsIndependentOfTheOrder) {

@@ -94,7 +94,8 @@ TEST(ColorTest, CategoriesRepeatAndMixInterpolates) {
 // WCAG 2.1.
 double Luminance(const Color& color) {
   const auto linear = [](const double part) {
-    return part <= 0.03928 ? part / 12.92 : std::pow((part + 0.055) / 1.055, 2.4);
+    return part <= 0.03928 ? part / 12.92
+                           : std::pow((part + 0.055) / 1.055, 2.4);
   };
   return 0.2126 * linear(color.red) + 0.7152 * linear(color.green) +
          0.0722 * linear(color.blue);
