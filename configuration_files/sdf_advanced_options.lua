@@ -286,6 +286,12 @@ SDF_GLOBAL_CONSTRAINTS = {
         -- An accepted match also proposes poses to the unmatched pairs of all
         -- submaps up to so many indices from its own. 0: to none.
         max_proposal_index_distance = 4,
+        -- close_loops and merge try a pair within a map that was not matched by
+        -- itself only while one of its submaps has fewer likely matches than
+        -- this. Larger: more closures of a place that was seen often, most of
+        -- them redundant, for time that grows with the square of the visits.
+        -- 0: no limit, as in match.
+        max_num_matches_per_submap = 20,
         -- Score = log-odds of being right. Learned by scripts/learn_score.py
         -- --neighbours on the same maps as score_weights.
         weights = {

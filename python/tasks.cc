@@ -41,7 +41,9 @@ std::shared_ptr<DescribedMap> Describe(const std::string& path,
 std::vector<Match> Recognize(const DescribedMap& map,
                              const DescribedMap* const query,
                              const Options& options, const int threads) {
-  const RecognitionOptions& recognition = options.loop_closing.recognition;
+  RecognitionOptions recognition = options.loop_closing.recognition;
+  // As the subcommand match: all of them.
+  recognition.neighbourhood.max_num_matches_per_submap = 0;
   std::vector<std::pair<std::string, double>> seconds;
   StageClock clock({}, &seconds);
   return query == nullptr

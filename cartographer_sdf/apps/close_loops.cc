@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "cartographer_sdf/place_store/described_map.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -23,7 +22,7 @@ std::string Validate(const LoopClosingOptions& options) {
 absl::StatusOr<LoopClosingResult> CloseLoops(
     const LoopClosingOptions& options, const MapSource& source,
     const std::set<int>& frozen_trajectories, const Executor& executor,
-    const StageCallback& on_stage) {
+    const StageCallback& on_stage, const MapDescriber& describe) {
   CHECK_EQ(Validate(options), "");
   CHECK(options.recognition.match.method == Method::kSdf)
       << "the paper's method verifies nothing";
@@ -31,9 +30,11 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
   if (!status.ok()) return status;
   LoopClosingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
+  const ProgressCallback on_progress = clock.Begin("read and describe");
   absl::StatusOr<DescribedMap> map =
-      DescribeMap(options.place, options.recognition.match, source, executor,
-                  clock.Begin("read and describe"), PointClouds::kKeep);
+      describe ? describe(source, on_progress)
+               : DescribeMap(options.place, options.recognition.match, source,
+                             executor, on_progress, PointClouds::kKeep);
   if (!map.ok()) return map.status();
   result.num_places = map->places.size();
   std::vector<Match> matches = RecognizeWithin(

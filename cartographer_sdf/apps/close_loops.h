@@ -19,6 +19,7 @@
 #include "cartographer_sdf/execution/stage_clock.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place/place.h"
+#include "cartographer_sdf/place_store/described_map.h"
 #include "cartographer_sdf/recognition/recognize.h"
 
 namespace cartographer_sdf {
@@ -43,11 +44,12 @@ struct LoopClosingResult {
 };
 
 // Fails if the file cannot be read or lacks one of the frozen trajectories,
-// which stay fixed. The recognition's method must be kSdf.
+// which stay fixed. The recognition's method must be kSdf. `describe`, if
+// given, describes the map in place of DescribeMap.
 [[nodiscard]] absl::StatusOr<LoopClosingResult> CloseLoops(
     const LoopClosingOptions& options, const MapSource& source,
     const std::set<int>& frozen_trajectories, const Executor& executor,
-    const StageCallback& on_stage = {});
+    const StageCallback& on_stage = {}, const MapDescriber& describe = {});
 
 }  // namespace cartographer_sdf
 

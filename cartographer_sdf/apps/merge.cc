@@ -268,13 +268,14 @@ absl::Status CheckFrozen(const std::string& first_path,
 
 absl::StatusOr<std::vector<Session>> ReadSessions(
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
-    const std::vector<MapSource>& sources, const Executor& executor,
-    StageClock* const clock) {
+    const std::vector<MapSource>& sources, const MapDescriber& describe,
+    const Executor& executor, StageClock* const clock) {
   std::vector<Session> sessions;
   for (const MapSource& source : sources) {
     absl::StatusOr<Session> session = DescribeSession(
         stages, scan_places, source, std::nullopt, executor,
-        clock->Begin(absl::StrCat("read and describe ", source.path)));
+        clock->Begin(absl::StrCat("read and describe ", source.path)),
+        describe);
     if (!session.ok()) return session.status();
     sessions.push_back(*std::move(session));
   }
@@ -390,7 +391,7 @@ absl::StatusOr<MergingResult> MergeSessions(
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
     const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,
-    const StageCallback& on_stage) {
+    const StageCallback& on_stage, const MapDescriber& describe) {
   CHECK_EQ(Validate(options), "");
   CHECK_GE(sources.size(), 2u);
   const std::vector<std::string> paths = PathsOf(sources);
@@ -400,7 +401,7 @@ absl::StatusOr<MergingResult> MergeSessions(
   MergingResult result;
   StageClock clock(on_stage, &result.stage_seconds);
   const absl::StatusOr<std::vector<Session>> sessions =
-      ReadSessions(scan_places, stages, sources, executor, &clock);
+      ReadSessions(scan_places, stages, sources, describe, executor, &clock);
   if (!sessions.ok()) return sessions.status();
   result.links =
       LinkSessions(localization, stages, *sessions, executor, &clock);

@@ -63,14 +63,15 @@ struct MergingResult {
 // and more than two sessions are in it, leaves out the session that is most
 // likely at fault. The map frame is that of the first session that stays.
 // Frozen trajectories, numbered in the order of all sessions' trajectories,
-// stay fixed; all must belong to that first session. Fails if a file cannot be
-// read, or if there is no such trajectory.
+// stay fixed; all must belong to that first session. `describe` is that of
+// DescribeSession. Fails if a file cannot be read, or if there is no such
+// trajectory.
 [[nodiscard]] absl::StatusOr<MergingResult> MergeSessions(
     const FoldCheckOptions& options, const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
     const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,
-    const StageCallback& on_stage = {});
+    const StageCallback& on_stage = {}, const MapDescriber& describe = {});
 
 // Attaches a query to a map in which it was localized. Every trajectory of the
 // map stays fixed, and no closures within either are sought. Fails if both are

@@ -126,7 +126,8 @@ absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
                                         const MapSource& source,
                                         const std::optional<TimeWindow>& window,
                                         const Executor& executor,
-                                        const ProgressCallback& on_progress) {
+                                        const ProgressCallback& on_progress,
+                                        const MapDescriber& describe) {
   const MatchOptions& match = options.recognition.match;
   if (window) {
     const absl::StatusOr<DescribedMap> read =
@@ -136,8 +137,10 @@ absl::StatusOr<Session> DescribeSession(const LoopClosingOptions& options,
                                   *window, executor);
     return Session{source.path, std::move(scans.map), std::move(scans.grids)};
   }
-  absl::StatusOr<DescribedMap> map = DescribeMap(
-      options.place, match, source, executor, on_progress, PointClouds::kKeep);
+  absl::StatusOr<DescribedMap> map =
+      describe ? describe(source, on_progress)
+               : DescribeMap(options.place, match, source, executor,
+                             on_progress, PointClouds::kKeep);
   if (!map.ok()) return map.status();
   Session session{source.path, *std::move(map), {}};
   const std::set<int> without_submaps =

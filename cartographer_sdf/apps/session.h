@@ -33,11 +33,13 @@ struct Session {
 
 // Describes all submaps in a file, and places made of the scans of trajectories
 // without submaps; with a window, only places made of the scans in it. See
-// scan_places.h. Fails as ReadMap does.
+// scan_places.h. `describe`, if given, describes the submaps in the file in
+// place of DescribeMap. Fails as ReadMap does.
 [[nodiscard]] absl::StatusOr<Session> DescribeSession(
     const LoopClosingOptions& options, const ScanPlaceOptions& scan_places,
     const MapSource& source, const std::optional<TimeWindow>& window,
-    const Executor& executor, const ProgressCallback& on_progress = {});
+    const Executor& executor, const ProgressCallback& on_progress = {},
+    const MapDescriber& describe = {});
 
 // Localizes the query in the map by the matches of its places with all places
 // of the map, or with those that an index proposes (recognition.use_retrieval).

@@ -256,6 +256,7 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("min_proposing_score", options.min_proposing_score);
   visit("max_num_rounds", options.max_num_rounds);
   visit("max_proposal_index_distance", options.max_proposal_index_distance);
+  visit("max_num_matches_per_submap", options.max_num_matches_per_submap);
   visit("weights", options.weights);
   visit("max_gain", options.max_gain);
 }

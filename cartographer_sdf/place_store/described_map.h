@@ -6,6 +6,7 @@
 #ifndef CARTOGRAPHER_SDF_PLACE_STORE_DESCRIBED_MAP_H_
 #define CARTOGRAPHER_SDF_PLACE_STORE_DESCRIBED_MAP_H_
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -53,6 +54,11 @@ enum class PointClouds { kDrop, kKeep };
     const MapSource& source, const Executor& executor,
     const ProgressCallback& on_progress = {},
     PointClouds point_clouds = PointClouds::kDrop);
+
+// Makes a described map with point clouds of a file, as DescribeMap does or
+// from places that were kept; fails as DescribeMap does.
+using MapDescriber = std::function<absl::StatusOr<DescribedMap>(
+    const MapSource& source, const ProgressCallback& on_progress)>;
 
 // Reads the map with its point clouds, without places.
 [[nodiscard]] absl::StatusOr<DescribedMap> ReadMapWithScans(

@@ -82,17 +82,29 @@ uint64_t HashOn(const char* const bytes, const std::streamsize count,
   return hash;
 }
 
+// A pose graph is the second record, behind the header.
+constexpr int kPoseGraphRecord = 1;
+
+struct HashedMap {
+  uint64_t hash;
+  int64_t size;
+};
+
 // Of the length of each record and of the end of its gzip member, which has a
 // checksum and the size of what it holds; none if the file is no container.
-std::optional<uint64_t> HashOfRecords(const int64_t size,
-                                      std::ifstream* const file) {
+std::optional<HashedMap> HashOfRecords(const PoseGraphInKey pose_graph,
+                                       const int64_t size,
+                                       std::ifstream* const file) {
   std::array<char, kHashedWordSize> word;
   file->seekg(0);
   if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
-  uint64_t hash = HashOn(word.data(), kHashedWordSize, kHashOffset);
-  for (int64_t at = kHashedWordSize; at < size;) {
+  HashedMap map{HashOn(word.data(), kHashedWordSize, kHashOffset), size};
+  int64_t at = kHashedWordSize;
+  for (int record = 0; at < size; ++record) {
     if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
-    hash = HashOn(word.data(), kHashedWordSize, hash);
+    const bool is_covered =
+        record != kPoseGraphRecord || pose_graph == PoseGraphInKey::kYes;
+    if (is_covered) map.hash = HashOn(word.data(), kHashedWordSize, map.hash);
     uint64_t length = 0;
     for (int k = kHashedWordSize - 1; k >= 0; --k) {
       length = length << 8 | static_cast<unsigned char>(word[k]);
@@ -102,14 +114,16 @@ std::optional<uint64_t> HashOfRecords(const int64_t size,
       return std::nullopt;
     }
     at += static_cast<int64_t>(length);
+    if (!is_covered) map.size -= static_cast<int64_t>(length);
     file->seekg(at - kHashedWordSize);
     if (!file->read(word.data(), kHashedWordSize)) return std::nullopt;
-    hash = HashOn(word.data(), kHashedWordSize, hash);
+    if (is_covered) map.hash = HashOn(word.data(), kHashedWordSize, map.hash);
   }
-  return hash;
+  return map;
 }
 
-std::optional<uint64_t> HashOfBytes(std::ifstream* const file) {
+std::optional<HashedMap> HashOfBytes(const int64_t size,
+                                     std::ifstream* const file) {
   file->clear();
   file->seekg(0);
   uint64_t hash = kHashOffset;
@@ -119,7 +133,7 @@ std::optional<uint64_t> HashOfBytes(std::ifstream* const file) {
     hash = HashOn(buffer.data(), file->gcount(), hash);
   }
   if (!file->eof()) return std::nullopt;
-  return hash;
+  return HashedMap{hash, size};
 }
 
 using ProtoPlace = proto::place_index::Place;
@@ -307,18 +321,19 @@ std::string DecodeFeatures(const ProtoPlace& proto, FeatureSet* const set) {
 }  // namespace
 
 absl::StatusOr<PlaceFileKey> MakePlaceFileKey(const std::string& map_path,
-                                              const std::string& options) {
+                                              const std::string& options,
+                                              const PoseGraphInKey pose_graph) {
   errno = 0;
   std::ifstream file(map_path, std::ios::binary | std::ios::ate);
   const int64_t size = file ? static_cast<int64_t>(file.tellg()) : -1;
-  std::optional<uint64_t> hash;
-  if (size >= 0) hash = HashOfRecords(size, &file);
-  if (size >= 0 && !hash) hash = HashOfBytes(&file);
-  if (!hash) {
+  std::optional<HashedMap> map;
+  if (size >= 0) map = HashOfRecords(pose_graph, size, &file);
+  if (size >= 0 && !map) map = HashOfBytes(size, &file);
+  if (!map) {
     return absl::ErrnoToStatus(errno != 0 ? errno : EIO,
                                absl::StrCat("cannot read ", map_path));
   }
-  return PlaceFileKey{*hash, size, options};
+  return PlaceFileKey{map->hash, map->size, options};
 }
 
 std::string EncodePlaceFileHeader(const PlaceFileKey& key, const int version,

@@ -21,19 +21,28 @@
 
 namespace cartographer_sdf {
 
+// Whether a key covers the pose graph of a .pbstream.
+enum class PoseGraphInKey {
+  // Descriptions do not depend on poses: those of a map also serve the map that
+  // close_loops or audit makes of it, whose other records are the same.
+  kNo,
+  kYes,
+};
+
 // Identifies the map and options of a place file; with others it is useless.
 struct PlaceFileKey {
-  // FNV-1a of the lengths and checksums of all records of a .pbstream, of all
+  // FNV-1a of the lengths and checksums of the records of a .pbstream, of all
   // bytes of another file: detects mistakes, not forgery.
   uint64_t map_hash = 0;
-  int64_t map_size = 0;  // [bytes]
+  int64_t map_size = 0;  // of what is covered [bytes]
   // All options that places depend on, as text.
   std::string options;
 };
 
 // Reads a few bytes of each record of the map; fails if it cannot.
 [[nodiscard]] absl::StatusOr<PlaceFileKey> MakePlaceFileKey(
-    const std::string& map_path, const std::string& options);
+    const std::string& map_path, const std::string& options,
+    PoseGraphInKey pose_graph = PoseGraphInKey::kNo);
 
 // The first record of a file that belongs to a map, and its problem when it is
 // read: FailedPrecondition as of ReadPlaces.

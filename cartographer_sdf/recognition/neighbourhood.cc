@@ -225,6 +225,9 @@ std::string Validate(const NeighbourhoodOptions& options) {
       options.max_proposal_index_distance > 100) {
     return "max_proposal_index_distance must lie between 0 and 100";
   }
+  if (options.max_num_matches_per_submap < 0) {
+    return "max_num_matches_per_submap must not be negative";
+  }
   if (options.num_points < 1) return "num_points must be positive";
   if (options.max_num_rounds < 0 || options.max_num_rounds > 1000) {
     return "max_num_rounds must lie between 0 and 1000";

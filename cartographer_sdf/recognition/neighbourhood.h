@@ -79,6 +79,11 @@ struct NeighbourhoodOptions {
   // An accepted match also proposes poses to the unmatched pairs of all submaps
   // up to so many indices from its own. 0: to none.
   int max_proposal_index_distance = 4;
+  // Within one map, a pair that was not matched by itself is tried only while
+  // one of its submaps has fewer likely matches than this, so that the work
+  // grows with the submaps and not with the square of how often a place was
+  // seen. 0: always.
+  int max_num_matches_per_submap = 20;
   NeighbourhoodWeights weights;
   // The neighbourhood raises the score of a pair by at most this, log-odds: it
   // cannot make up for walls that disagree.

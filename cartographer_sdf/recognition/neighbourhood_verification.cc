@@ -40,6 +40,59 @@ struct Decision {
 
 IdPair IdsOf(const PairPose& pair) { return {pair.reference, pair.query}; }
 
+// Bounds the matches of each submap that only neighbours propose: a place that
+// was seen n times has some n^2 / 2 pairs, and most say what others have said.
+class MatchBudget {
+ public:
+  explicit MatchBudget(const int max_num_matches_per_submap)
+      : max_num_matches_(max_num_matches_per_submap) {}
+
+  // Whether one of the two submaps has matches to come.
+  [[nodiscard]] bool Affords(const IdPair& ids) const {
+    return max_num_matches_ == 0 || NumSpent(ids.first) < max_num_matches_ ||
+           NumSpent(ids.second) < max_num_matches_;
+  }
+  void Spend(const IdPair& ids) {
+    ++num_spent_[ids.first];
+    ++num_spent_[ids.second];
+  }
+
+ private:
+  [[nodiscard]] int NumSpent(const SubmapId& id) const {
+    const auto found = num_spent_.find(id);
+    return found == num_spent_.end() ? 0 : found->second;
+  }
+
+  const int max_num_matches_;
+  std::map<SubmapId, int> num_spent_;
+};
+
+// Leaves out tasks without a match that the budget does not afford once the
+// likelier ones are done. `tasks` stay in their order.
+void KeepAffordable(MatchBudget budget, std::vector<Task>* const tasks) {
+  std::vector<Task*> unmatched;
+  for (Task& task : *tasks) {
+    if (task.match == nullptr) unmatched.push_back(&task);
+  }
+  std::stable_sort(unmatched.begin(), unmatched.end(),
+                   [](const Task* const a, const Task* const b) {
+                     return a->proposals[0].score > b->proposals[0].score;
+                   });
+  std::set<IdPair> left_out;
+  for (const Task* const task : unmatched) {
+    if (budget.Affords(task->ids)) {
+      budget.Spend(task->ids);
+    } else {
+      left_out.insert(task->ids);
+    }
+  }
+  tasks->erase(std::remove_if(tasks->begin(), tasks->end(),
+                              [&left_out](const Task& task) {
+                                return left_out.count(task.ids) > 0;
+                              }),
+               tasks->end());
+}
+
 class NeighbourhoodVerifier {
  public:
   NeighbourhoodVerifier(const NeighbourhoodOptions& options,
@@ -62,40 +115,34 @@ class NeighbourhoodVerifier {
   }
 
   // Returns the pairs that have proposals or rivals to choose from, by their
-  // ids.
+  // ids; those without a match as far as the budget allows.
   [[nodiscard]] std::vector<Task> CollectTasks(
       const std::map<IdPair, Match>& matches,
       const std::vector<PairPose>& proposals) const {
     std::map<IdPair, Task> tasks;
-    const auto task_of = [&tasks](const IdPair& ids) -> Task& {
-      return tasks.emplace(ids, Task{ids, nullptr, {}}).first->second;
-    };
     for (const auto& [ids, match] : matches) {
       if (!match.rivals.empty() &&
           match.pair.score >= options_.min_proposing_score) {
-        task_of(ids);
+        tasks.emplace(ids, Task{ids, &match, {}});
       }
     }
     for (const PairPose& proposal : proposals) {
-      task_of(IdsOf(proposal)).proposals.push_back(proposal);
-    }
-    for (auto& [ids, task] : tasks) {
-      const auto match = matches.find(ids);
-      if (match != matches.end()) task.match = &match->second;
-    }
-    std::vector<Task> result;
-    for (auto& [ids, task] : tasks) {
-      KeepBestProposals(&task);
-      if (!task.proposals.empty() || !task.match->rivals.empty()) {
-        result.push_back(std::move(task));
+      const IdPair ids = IdsOf(proposal);
+      const auto [task, is_new] =
+          tasks.try_emplace(ids, Task{ids, nullptr, {}});
+      if (is_new) {
+        const auto match = matches.find(ids);
+        if (match != matches.end()) task->second.match = &match->second;
       }
+      task->second.proposals.push_back(proposal);
     }
-    return result;
+    return Affordable(std::move(tasks), matches);
   }
 
-  // Where an accepted match puts the unmatched pairs of submaps around its own;
-  // nothing if it is too unlikely.
+  // Where an accepted match puts the unmatched pairs of submaps around its own
+  // that the budget affords; nothing if it is too unlikely.
   void ProposeAround(const Match& match, const std::map<IdPair, Match>& matches,
+                     const MatchBudget& budget,
                      std::vector<PairPose>* const proposals) const {
     const PairPose& pair = match.pair;
     if (match.verdict != Verdict::kAccepted ||
@@ -117,22 +164,40 @@ class NeighbourhoodVerifier {
         const PairPose proposal = InOrder(
             {i, j, T_i_query * RelativePose(maps_.queries, pair.query, j),
              pair.score});
-        if (matches.count(IdsOf(proposal)) == 0 && Overlap(proposal)) {
+        const IdPair ids = IdsOf(proposal);
+        if (matches.count(ids) == 0 && budget.Affords(ids) &&
+            Overlap(proposal)) {
           proposals->push_back(proposal);
         }
       }
     }
   }
 
-  // Returns the pairs without a match that have proposals, by their ids.
+  // Returns the pairs without a match that have proposals, by their ids, as far
+  // as the budget allows.
   [[nodiscard]] std::vector<Task> CollectUnmatched(
       const std::map<IdPair, Match>& matches,
       const std::vector<PairPose>& proposals) const {
-    std::vector<PairPose> unmatched;
+    std::map<IdPair, Task> tasks;
     for (const PairPose& proposal : proposals) {
-      if (matches.count(IdsOf(proposal)) == 0) unmatched.push_back(proposal);
+      const IdPair ids = IdsOf(proposal);
+      if (matches.count(ids) > 0) continue;
+      tasks.try_emplace(ids, Task{ids, nullptr, {}})
+          .first->second.proposals.push_back(proposal);
     }
-    return CollectTasks({}, unmatched);
+    return Affordable(std::move(tasks), matches);
+  }
+
+  // What the matches so far leave. Between two maps there is no bound: all
+  // matches vote for a placement.
+  [[nodiscard]] MatchBudget Budget(
+      const std::map<IdPair, Match>& matches) const {
+    MatchBudget budget(maps_.min_index_gap ? options_.max_num_matches_per_submap
+                                           : 0);
+    for (const auto& [ids, match] : matches) {
+      if (match.verdict == Verdict::kAccepted) budget.Spend(ids);
+    }
+    return budget;
   }
 
   // Returns the most likely of the match's own pose, its rivals and the
@@ -179,6 +244,21 @@ class NeighbourhoodVerifier {
   }
 
  private:
+  // Those of the tasks that leave a choice and that the budget affords.
+  [[nodiscard]] std::vector<Task> Affordable(
+      std::map<IdPair, Task> tasks,
+      const std::map<IdPair, Match>& matches) const {
+    std::vector<Task> result;
+    for (auto& [ids, task] : tasks) {
+      KeepBestProposals(&task);
+      if (!task.proposals.empty() || !task.match->rivals.empty()) {
+        result.push_back(std::move(task));
+      }
+    }
+    KeepAffordable(Budget(matches), &result);
+    return result;
+  }
+
   // The registered neighbours of a match as proposals, with its score; none if
   // it is too unlikely.
   [[nodiscard]] std::vector<PairPose> ProposalsOf(
@@ -315,10 +395,11 @@ void SpreadAccepted(const NeighbourhoodVerifier& verifier,
                     std::map<IdPair, Match>* const matches) {
   std::set<IdPair> have_proposed;
   for (;;) {
+    const MatchBudget budget = verifier.Budget(*matches);
     std::vector<PairPose> proposals;
     for (const auto& [ids, match] : *matches) {
       if (have_proposed.insert(ids).second) {
-        verifier.ProposeAround(match, *matches, &proposals);
+        verifier.ProposeAround(match, *matches, budget, &proposals);
       }
     }
     const std::vector<Task> tasks =

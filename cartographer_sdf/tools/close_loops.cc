@@ -78,9 +78,10 @@ absl::Status RunCloseLoops(RunRecord* const record) {
   const absl::StatusOr<MapTask> task = MapTaskOfFlags("close_loops");
   if (!task.ok()) return task.status();
   StageProgress progress(record);
-  const absl::StatusOr<LoopClosingResult> result = CloseLoops(
-      task->options.loop_closing, SourceOfFlags(FLAGS_input),
-      task->frozen_trajectories, task->executor, progress.Callback());
+  const absl::StatusOr<LoopClosingResult> result =
+      CloseLoops(task->options.loop_closing, SourceOfFlags(FLAGS_input),
+                 task->frozen_trajectories, task->executor, progress.Callback(),
+                 DescriberOfFlags(*task, {FLAGS_input}, record));
   if (!result.ok()) return result.status();
   absl::Status status;
   if (!FLAGS_closures.empty()) {
@@ -111,7 +112,8 @@ Subcommand CloseLoopsSubcommand() {
       "close_loops",
       "find the loop closures of a map and optimise it",
       "A.pbstream (--output B.pbstream | --in_place) [--closures C.csv] "
-      "[--report DIR] [--result R.json] [--repair] [--drop_odometry]",
+      "[--report DIR] [--places P.places] [--result R.json] [--repair] "
+      "[--drop_odometry]",
       "Finds submaps that see the same place by the shape of their free space, "
       "without a pose prior; verifies the matches; keeps a mutually consistent "
       "set; adds it to the pose graph as inter-submap constraints; optimises; "
@@ -127,6 +129,7 @@ Subcommand CloseLoopsSubcommand() {
        {"report", FileUse::kWriteInto, {"index.html"}},
        {"picture", FileUse::kWriteText},
        "picture_pixels",
+       {"places", FileUse::kCache},
        "in_place",
        "backup",
        "repair",

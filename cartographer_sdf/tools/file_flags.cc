@@ -74,6 +74,12 @@ std::optional<std::string> ConfigurationFile() {
   return std::nullopt;
 }
 
+// What becomes of each file of a list.
+FileUse UseOfEach(const FileUse list) {
+  if (list == FileUse::kReadList) return FileUse::kRead;
+  return list == FileUse::kCacheList ? FileUse::kCache : FileUse::kWriteText;
+}
+
 // Appends what a flag names, each file of a list by itself.
 void AppendFiles(const SubcommandFlag& flag, std::vector<UsedFile>* const all) {
   const std::string value =
@@ -83,12 +89,9 @@ void AppendFiles(const SubcommandFlag& flag, std::vector<UsedFile>* const all) {
     return;
   }
   const std::string name = absl::StrCat("--", flag.name);
-  if (flag.use == FileUse::kReadList || flag.use == FileUse::kWriteTextList) {
+  if (TakesSeveralFiles(flag)) {
     for (const std::string& path : SplitPaths(value)) {
-      all->push_back({name, path,
-                      flag.use == FileUse::kReadList ? FileUse::kRead
-                                                     : FileUse::kWriteText,
-                      false});
+      all->push_back({name, path, UseOfEach(flag.use), false});
     }
     return;
   }
@@ -284,7 +287,7 @@ std::vector<NamedFile> FilesWhere(
 
 bool TakesSeveralFiles(const SubcommandFlag& flag) {
   return flag.use == FileUse::kReadList || flag.use == FileUse::kPassList ||
-         flag.use == FileUse::kWriteTextList;
+         flag.use == FileUse::kWriteTextList || flag.use == FileUse::kCacheList;
 }
 
 std::vector<std::string> SplitPaths(const std::string& list) {

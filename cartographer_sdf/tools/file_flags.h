@@ -32,9 +32,10 @@ enum class FileUse {
   kPassList,   // several, which other processes read, or fail to
   kWriteText,  // a table or the like; "-" is the standard output
   kWriteTextList,
-  kWriteMap,   // a .pbstream
-  kCopyMap,    // a .pbstream with all that the maps which are read contain
-  kCache,      // a place file: read where it fits, else written
+  kWriteMap,  // a .pbstream
+  kCopyMap,   // a .pbstream with all that the maps which are read contain
+  kCache,     // a place file: read where it fits, else written
+  kCacheList,
   kWriteInto,  // a directory, made if it is missing
 };
 

@@ -61,6 +61,8 @@ absl::StatusOr<MethodOptions> OptionsOfFlags() {
     }
     recognition.verify_neighbourhoods = false;
   }
+  // A table of all matches, however many say the same.
+  recognition.neighbourhood.max_num_matches_per_submap = 0;
   if (FLAGS_alone) recognition.verify_neighbourhoods = false;
   if (FLAGS_all_pairs) recognition.use_retrieval = false;
   if (!FLAGS_neighbour_terms.empty() && !recognition.verify_neighbourhoods) {
@@ -87,8 +89,9 @@ absl::StatusOr<DescribedMap> Describe(const MethodOptions& method,
   const LoopClosingOptions& stages = method.options.loop_closing;
   // --places applies to the map, not to the query.
   if (path == FLAGS_input) {
-    return DescribeMapOfFlags(stages, path, executor, PointClouds::kDrop,
-                              on_progress, record);
+    return DescribeOrRemember(stages, SourceOfFlags(path), FLAGS_places,
+                              executor, PointClouds::kDrop, on_progress,
+                              record);
   }
   return DescribeMap(stages.place, stages.recognition.match,
                      SourceOfFlags(path), executor, on_progress);

@@ -94,6 +94,14 @@ absl::StatusOr<std::vector<MapSource>> InputsOfFlags() {
   return inputs;
 }
 
+absl::Status CheckFlagsOfMerge() {
+  if (FLAGS_places.empty() ||
+      SplitPaths(FLAGS_places).size() == SplitPaths(FLAGS_inputs).size()) {
+    return absl::OkStatus();
+  }
+  return UsageError("--places takes as many files as there are inputs");
+}
+
 // Writes the files that the flags ask for. A refusal is an error, but still
 // writes the report.
 absl::Status WriteFiles(const Options& options, const MergingResult& result,
@@ -125,7 +133,8 @@ absl::Status RunMerge(RunRecord* const record) {
   const absl::StatusOr<MergingResult> result = MergeSessions(
       options.fold_check, options.localization, options.scan_places,
       options.loop_closing, *inputs, task->frozen_trajectories, task->executor,
-      progress.Callback());
+      progress.Callback(),
+      DescriberOfFlags(*task, SplitPaths(FLAGS_inputs), record));
   if (!result.ok()) return result.status();
   RecordMerging(*result, record);
   const absl::Status status =
@@ -160,6 +169,13 @@ Subcommand MergeSubcommand() {
       {{"inputs", FileUse::kReadList},
        {"output", FileUse::kCopyMap, {}, "Map to write, a .pbstream."}},
       {{"report", FileUse::kWriteInto, {"index.html"}},
+       {"places",
+        FileUse::kCacheList,
+        {},
+        "Files that cache the descriptions of the submaps of the inputs, one "
+        "for each in their order, separated by commas, so that later runs "
+        "start faster. Written if missing or made for another map or other "
+        "options."},
        "repair",
        "drop_odometry",
        "frozen_trajectories",
@@ -167,6 +183,7 @@ Subcommand MergeSubcommand() {
        "configuration_basename",
        "threads"},
       &RunMerge};
+  subcommand.check_flags = &CheckFlagsOfMerge;
   subcommand.positional_flags = {"inputs"};
   return subcommand;
 }

@@ -275,8 +275,9 @@ absl::Status RunRelocalize(RunRecord* const record) {
   const absl::StatusOr<std::optional<TimeWindow>> window = WindowOfFlags();
   if (!window.ok()) return window.status();
   StageProgress progress(record);
-  absl::StatusOr<DescribedMap> map = DescribeMapOfFlags(
-      task->options.loop_closing, FLAGS_map, task->executor,
+  absl::StatusOr<DescribedMap> map = DescribeOrRemember(
+      task->options.loop_closing, SourceOfFlags(FLAGS_map), FLAGS_places,
+      task->executor,
       FLAGS_output.empty() ? PointClouds::kDrop : PointClouds::kKeep,
       progress.Begin("read and describe the map"), record);
   if (!map.ok()) return map.status();

@@ -63,12 +63,14 @@ absl::StatusOr<DrawnMap> DrawMap(const ViewpointOptions& options, MapGrid map) {
   return DrawnMap{std::move(map.grid), *std::move(panoramas)};
 }
 
-// A map of ROS is several files, and quickly read.
+// A map of ROS is several files, and quickly read. Of a .pbstream, poses count:
+// panoramas are drawn of the whole map.
 absl::StatusOr<PlaceFileKey> KeyOfMap(const std::string& options_text,
                                       const std::optional<MapGrid>& ros_map) {
-  return ros_map ? absl::StatusOr<PlaceFileKey>(
-                       MakeGridKey(ros_map->grid, options_text))
-                 : MakePlaceFileKey(FLAGS_map, options_text);
+  return ros_map
+             ? absl::StatusOr<PlaceFileKey>(
+                   MakeGridKey(ros_map->grid, options_text))
+             : MakePlaceFileKey(FLAGS_map, options_text, PoseGraphInKey::kYes);
 }
 
 // From the file of --places, which is written where it does not fit.

@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/tools/stages.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -102,24 +103,43 @@ absl::StatusOr<MapTask> MapTaskOfFlags(const std::string& subcommand) {
                  *std::move(frozen)};
 }
 
-absl::StatusOr<DescribedMap> DescribeMapOfFlags(
-    const LoopClosingOptions& options, const std::string& path,
-    const Executor& executor, const PointClouds point_clouds,
-    const ProgressCallback& on_progress, RunRecord* const record) {
+absl::StatusOr<DescribedMap> DescribeOrRemember(
+    const LoopClosingOptions& options, const MapSource& source,
+    const std::string& places_path, const Executor& executor,
+    const PointClouds point_clouds, const ProgressCallback& on_progress,
+    RunRecord* const record) {
   const MatchOptions& match = options.recognition.match;
-  if (FLAGS_places.empty()) {
-    return DescribeMap(options.place, match, SourceOfFlags(path), executor,
-                       on_progress, point_clouds);
+  if (places_path.empty()) {
+    return DescribeMap(options.place, match, source, executor, on_progress,
+                       point_clouds);
   }
   absl::StatusOr<RememberedMap> remembered = RememberMap(
-      options.place, match, FormatPlaceOptions(options.place, match),
-      SourceOfFlags(path), FLAGS_places, executor, on_progress, point_clouds);
+      options.place, match, FormatPlaceOptions(options.place, match), source,
+      places_path, executor, on_progress, point_clouds);
   if (!remembered.ok()) return remembered.status();
   if (!remembered->complaint.empty()) {
     std::cerr << "--places: " << remembered->complaint << "\n";
     record->Warn(RunWarning::kPlacesNotUsed, remembered->complaint);
   }
   return std::move(remembered->map);
+}
+
+MapDescriber DescriberOfFlags(const MapTask& task,
+                              const std::vector<std::string>& maps,
+                              RunRecord* const record) {
+  std::map<std::string, std::string> places_of_map;
+  const std::vector<std::string> places = SplitPaths(FLAGS_places);
+  for (size_t k = 0; k < std::min(maps.size(), places.size()); ++k) {
+    places_of_map[maps[k]] = places[k];
+  }
+  return [&task, places_of_map, record](const MapSource& source,
+                                        const ProgressCallback& on_progress) {
+    const auto found = places_of_map.find(source.path);
+    return DescribeOrRemember(task.options.loop_closing, source,
+                              found == places_of_map.end() ? "" : found->second,
+                              task.executor, PointClouds::kKeep, on_progress,
+                              record);
+  };
 }
 
 absl::Status WriteMapAndReport(

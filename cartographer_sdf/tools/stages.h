@@ -36,13 +36,20 @@ struct MapTask {
 [[nodiscard]] absl::StatusOr<MapTask> MapTaskOfFlags(
     const std::string& subcommand);
 
-// Returns the map with its places. With --places, reads them from that file if
-// it fits; otherwise describes them, writes the file, and records a warning if
-// there was one.
-[[nodiscard]] absl::StatusOr<DescribedMap> DescribeMapOfFlags(
-    const LoopClosingOptions& options, const std::string& path,
-    const Executor& executor, PointClouds point_clouds,
-    const ProgressCallback& on_progress, RunRecord* record);
+// Returns the map with its places. Reads them from the file at `places_path`,
+// unless it is empty, if that fits; otherwise describes them, writes the file,
+// and records a warning if there was one.
+[[nodiscard]] absl::StatusOr<DescribedMap> DescribeOrRemember(
+    const LoopClosingOptions& options, const MapSource& source,
+    const std::string& places_path, const Executor& executor,
+    PointClouds point_clouds, const ProgressCallback& on_progress,
+    RunRecord* record);
+
+// Describes maps with their point clouds: each of `maps` with the file of
+// --places in its turn, or without one. The arguments must outlive it.
+[[nodiscard]] MapDescriber DescriberOfFlags(
+    const MapTask& task, const std::vector<std::string>& maps,
+    RunRecord* record);
 
 // An error if --picture_pixels is no size.
 [[nodiscard]] absl::Status CheckPictureFlags();

@@ -219,6 +219,16 @@ std::string SpreadMatches(const RecognitionOptions& options) {
           .size());
 }
 
+// How many matches there are of a place that was seen three times.
+std::string MatchManyVisits(const RecognitionOptions& options) {
+  const testing::ManyVisits visits(3);
+  return std::to_string(
+      VerifyNeighbourhoods(options.neighbourhood, options.match,
+                           {visits.Places(), visits.Places(), 3},
+                           visits.WestMatches(), MakeExecutor(1))
+          .size());
+}
+
 TEST(OptionEffectsTest, OfPlaces) {
   const Drive drive;
   const std::vector<testing::Scenario<PlaceOptions>> scenarios = {
@@ -311,6 +321,7 @@ TEST(OptionEffectsTest, OfRecognition) {
                 drive.Recognize(generous, featureless);
        }},
       {"neighbourhood.max_proposal_index_distance", &SpreadMatches},
+      {"neighbourhood.max_num_matches_per_submap", &MatchManyVisits},
       {"retrieval.",
        [&](const RecognitionOptions& options) {
          RetrievalOptions retrieval = options.retrieval;

@@ -163,17 +163,39 @@ TEST_F(PlaceFileTest, BelongsToTheRecordsOfAMap) {
   const std::string grid(100000, 'g');
   std::string other = grid;
   other[50000] = 'h';
-  const uint64_t hash = key({"graph", grid, "node"});
-  EXPECT_EQ(key({"graph", grid, "node"}), hash);
-  EXPECT_NE(key({"graph", other, "node"}), hash);
-  EXPECT_NE(key({"graph", "node", grid}), hash);
-  EXPECT_NE(key({"graph", grid}), hash);
+  const uint64_t hash = key({"header", "graph", grid, "node"});
+  EXPECT_EQ(key({"header", "graph", grid, "node"}), hash);
+  EXPECT_NE(key({"header", "graph", other, "node"}), hash);
+  EXPECT_NE(key({"header", "graph", "node", grid}), hash);
+  EXPECT_NE(key({"header", "graph", grid}), hash);
   // A file that was cut has a key, too.
-  std::string cut = testing::Container({"graph", grid, "node"});
+  std::string cut = testing::Container({"header", "graph", grid, "node"});
   cut.pop_back();
   const auto made = MakePlaceFileKey(directory_.Write("cut", cut), "options");
   ASSERT_TRUE(made.ok()) << made.status();
   EXPECT_NE(made->map_hash, hash);
+}
+
+// Closing loops changes the pose graph alone, and no description.
+TEST_F(PlaceFileTest, BelongsToAMapWhateverItsPoseGraph) {
+  const auto key = [this](const std::string& graph, const std::string& grid,
+                          const PoseGraphInKey pose_graph) {
+    const std::string path = directory_.Write(
+        "map", testing::Container({"header", graph, "options", grid}));
+    const auto made = MakePlaceFileKey(path, "options", pose_graph);
+    CHECK(made.ok()) << made.status();
+    return std::make_pair(made->map_hash, made->map_size);
+  };
+  const std::string longer(1000, 'g');
+  const auto hash = key("graph", "grid", PoseGraphInKey::kNo);
+  EXPECT_EQ(key("other", "grid", PoseGraphInKey::kNo), hash);
+  EXPECT_EQ(key(longer, "grid", PoseGraphInKey::kNo), hash);
+  EXPECT_NE(key("graph", "gray", PoseGraphInKey::kNo), hash);
+  EXPECT_NE(key("graph", longer, PoseGraphInKey::kNo), hash);
+  const auto with_graph = key("graph", "grid", PoseGraphInKey::kYes);
+  EXPECT_EQ(key("graph", "grid", PoseGraphInKey::kYes), with_graph);
+  EXPECT_NE(key("other", "grid", PoseGraphInKey::kYes), with_graph);
+  EXPECT_NE(key(longer, "grid", PoseGraphInKey::kYes), with_graph);
 }
 
 TEST_F(PlaceFileTest, NeedsAMapThatCanBeRead) {

@@ -182,6 +182,72 @@ TEST(VerifyNeighbourhoodsTest, AcceptedMatchesProposeToAllPairsAroundThem) {
   EXPECT_EQ(num_matches(), 1u);
 }
 
+// Of the pairs that only neighbours propose: three visits have three of the
+// east room, two of which tie all of them.
+TEST(VerifyNeighbourhoodsTest, ASubmapGetsNoMoreMatchesThanItNeeds) {
+  const testing::ManyVisits visits(3);
+  const auto east_matches = [&](const int max_num_matches,
+                                const Executor& executor) {
+    NeighbourhoodOptions options;
+    options.max_num_matches_per_submap = max_num_matches;
+    std::vector<IdPair> pairs;
+    for (const Match& match : VerifyNeighbourhoods(
+             options, MatchOptions(), {visits.Places(), visits.Places(), 3},
+             visits.WestMatches(), executor)) {
+      if (match.pair.reference.index % 10 == 0) continue;
+      EXPECT_STREQ(VerdictName(match.verdict), "accepted");
+      pairs.emplace_back(match.pair.reference, match.pair.query);
+    }
+    return pairs;
+  };
+  const IdPair a{visits.East(0), visits.East(1)};
+  const IdPair b{visits.East(0), visits.East(2)};
+  const IdPair c{visits.East(1), visits.East(2)};
+  EXPECT_THAT(east_matches(0, &Forwards), ::testing::ElementsAre(a, b, c));
+  EXPECT_THAT(east_matches(2, &Forwards), ::testing::ElementsAre(a, b, c));
+  const std::vector<IdPair> bounded = east_matches(1, &Forwards);
+  EXPECT_EQ(bounded.size(), 2u);
+  EXPECT_EQ(east_matches(1, &Backwards), bounded);
+}
+
+// What was matched by itself is verified, however much there is.
+TEST(VerifyNeighbourhoodsTest, TheBudgetTakesNoMatchAway) {
+  const testing::ManyVisits visits(3);
+  NeighbourhoodOptions options;
+  options.max_num_matches_per_submap = 1;
+  const std::vector<Match> judged = VerifyNeighbourhoods(
+      options, MatchOptions(), {visits.Places(), visits.Places(), 3},
+      visits.WestMatches(), &Forwards);
+  for (const auto& [first, second] : {std::pair(0, 1), {0, 2}, {1, 2}}) {
+    const Match* const match =
+        Find(judged, visits.West(first), visits.West(second));
+    ASSERT_NE(match, nullptr);
+    EXPECT_STREQ(VerdictName(match->verdict), "accepted");
+  }
+}
+
+// Where all matches vote.
+TEST(VerifyNeighbourhoodsTest, BetweenMapsThereIsNoBudget) {
+  const testing::ManyVisits visits(4);
+  std::map<SubmapId, Place> references, queries;
+  for (const auto& [id, place] : *visits.Places().places) {
+    (id < visits.West(2) ? references : queries).emplace(id, place);
+  }
+  NeighbourhoodOptions options;
+  options.max_num_matches_per_submap = 1;
+  const auto& odometry = visits.Places().odometry;
+  const std::vector<Match> judged = VerifyNeighbourhoods(
+      options, MatchOptions(),
+      {{&references, odometry}, {&queries, odometry}, std::nullopt},
+      {visits.WestMatch(0, 2), visits.WestMatch(0, 3), visits.WestMatch(1, 2),
+       visits.WestMatch(1, 3)},
+      &Forwards);
+  for (const auto& [first, second] :
+       {std::pair(0, 2), {0, 3}, {1, 2}, {1, 3}}) {
+    EXPECT_NE(Find(judged, visits.East(first), visits.East(second)), nullptr);
+  }
+}
+
 // Between two maps, the map stays the reference whatever the ids.
 TEST(VerifyNeighbourhoodsTest, ProposalsBetweenMapsKeepTheirSides) {
   const TwoVisits visits;

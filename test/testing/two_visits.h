@@ -6,11 +6,14 @@
 #ifndef TEST_TESTING_TWO_VISITS_H_
 #define TEST_TESTING_TWO_VISITS_H_
 
+#include <iterator>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "cartographer_sdf/place/place.h"
+#include "cartographer_sdf/recognition/match.h"
 #include "cartographer_sdf/recognition/neighbourhood.h"
 #include "test/testing/building.h"
 
@@ -61,6 +64,59 @@ class TwoVisits {
   std::map<SubmapId, Place> places_;
   std::map<SubmapId, OdometryPose> odometry_;
   std::map<SubmapId, Rigid2> T_world_submap_;
+};
+
+// Of more visits: those after the second see what the second does. Their west
+// rooms match each other by themselves, as if the features of the east rooms
+// had failed.
+class ManyVisits {
+ public:
+  explicit ManyVisits(const int num_visits) {
+    const TwoVisits visits;
+    for (int k = 0; k < num_visits; ++k) {
+      Add(visits, k == 0 ? TwoVisits::kWestFirst : TwoVisits::kWestAgain,
+          West(k), 100. * k);
+      Add(visits, k == 0 ? TwoVisits::kEastFirst : TwoVisits::kEastAgain,
+          East(k), 100. * k);
+    }
+  }
+
+  static SubmapId West(const int visit) { return {0, 10 * visit}; }
+  static SubmapId East(const int visit) { return {0, 10 * visit + 2}; }
+
+  [[nodiscard]] TrajectoryPlaces Places() const {
+    return {&places_, &odometry_};
+  }
+  [[nodiscard]] Match WestMatch(const int reference, const int query) const {
+    std::optional<Match> match = MatchPlaces(
+        MatchOptions(), places_.at(West(reference)), places_.at(West(query)));
+    CHECK(match.has_value());
+    return *std::move(match);
+  }
+  [[nodiscard]] std::vector<Match> WestMatches() const {
+    std::vector<Match> matches;
+    for (auto a = places_.begin(); a != places_.end(); ++a) {
+      for (auto b = std::next(a); b != places_.end(); ++b) {
+        const int first = a->first.index, second = b->first.index;
+        if (first % 10 != 0 || second % 10 != 0) continue;
+        matches.push_back(WestMatch(first / 10, second / 10));
+      }
+    }
+    return matches;
+  }
+
+ private:
+  void Add(const TwoVisits& visits, const SubmapId& original,
+           const SubmapId& id, const double distance_driven) {
+    Place place = visits.Places().places->at(original);
+    place.id = id;
+    places_.emplace(id, std::move(place));
+    odometry_[id] = visits.Places().odometry->at(original);
+    odometry_[id].distance_driven += distance_driven;
+  }
+
+  std::map<SubmapId, Place> places_;
+  std::map<SubmapId, OdometryPose> odometry_;
 };
 
 // A visit that sees the west room twice, as the submaps kWestAgain and

@@ -4,12 +4,15 @@
 // The whole path as a user walks it: simulate, close_loops, evaluate, match.
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/place_store/place_file.h"
 #include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
@@ -398,6 +401,44 @@ TEST_F(CloseLoopsTest, UserMapsRun) {
     EXPECT_EQ(result.exit_code, 0) << result.error;
     EXPECT_TRUE(ReadMap(File(name + ".pbstream")).ok());
   }
+}
+
+// The second time and in the closed map, whose submaps are the same; with an
+// answer that is the same, byte for byte.
+TEST_F(CloseLoopsTest, RemembersWhatSubmapsLookLike) {
+  const std::string places = File("a.places");
+  const auto close = [&](const std::string& output) {
+    const ProgramResult result = CloseLoops(
+        output, {"--places", places, "--result", File("remembered.json")});
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    return directory_->Read(output);
+  };
+  const std::string closed = close("first.pbstream");
+  // A file that fits is not written again.
+  const auto long_ago =
+      std::filesystem::last_write_time(places) - std::chrono::hours(1);
+  std::filesystem::last_write_time(places, long_ago);
+  const auto is_unchanged = [&] {
+    return std::filesystem::last_write_time(places) == long_ago;
+  };
+  EXPECT_TRUE(close("second.pbstream") == closed);
+  EXPECT_TRUE(is_unchanged());
+  ASSERT_EQ(CloseLoops("third.pbstream", {}).exit_code, 0);
+  EXPECT_TRUE(directory_->Read("third.pbstream") == closed);
+  const ProgramResult again =
+      RunTestProgram({"close_loops", File("first.pbstream"), "--output",
+                      File("fourth.pbstream"), "--places", places});
+  ASSERT_EQ(again.exit_code, 0) << again.error;
+  EXPECT_EQ(again.error, "");
+  EXPECT_TRUE(is_unchanged());
+  // It is read, in place of the grids: what it lacks is not found.
+  const auto key =
+      MakePlaceFileKey(File("open.pbstream"),
+                       FormatPlaceOptions(PlaceOptions(), MatchOptions()));
+  ASSERT_TRUE(key.ok()) << key.status();
+  ASSERT_TRUE(WritePlaces(places, *key, {}).ok());
+  EXPECT_TRUE(close("fifth.pbstream") == directory_->Read("open.pbstream"));
 }
 
 }  // namespace

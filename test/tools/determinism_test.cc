@@ -75,7 +75,7 @@ TEST_F(DeterminismTest, AnyNumberOfThreads) {
   const std::string morning = offices_->Morning();
   const std::string evening = offices_->Evening();
   ExpectSame({"close_loops", "--input", morning},
-             {"output", "closures", "result"});
+             {"output", "closures", "places", "result"});
   ExpectSame({"match", "--input", morning, "--query", evening},
              {"output", "terms", "places", "result"});
   ExpectSame({"audit", "--input", morning},

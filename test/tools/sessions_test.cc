@@ -4,6 +4,7 @@
 // relocalize and merge as a user runs them.
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -197,6 +198,44 @@ TEST_F(SessionsTest, MergesAndTellsOfStrangers) {
             offices_->Read("again.pbstream"));
 }
 
+TEST_F(SessionsTest, MergesWhatItRemembers) {
+  const std::string inputs = offices_->Evening() + "," + offices_->Morning();
+  const auto merge = [&](const std::string& output,
+                         const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"merge", "--inputs", inputs,
+                                          "--output", File(output)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = RunTestProgram(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.error;
+    EXPECT_EQ(result.error, "");
+    return offices_->Read(output);
+  };
+  const std::vector<std::string> places = {
+      "--places", File("evening.places") + "," + File("morning.places")};
+  const std::string merged = merge("described.pbstream", {});
+  EXPECT_TRUE(merge("written.pbstream", places) == merged);
+  const auto long_ago =
+      std::filesystem::last_write_time(File("morning.places")) -
+      std::chrono::hours(1);
+  for (const char* const name : {"evening.places", "morning.places"}) {
+    std::filesystem::last_write_time(File(name), long_ago);
+  }
+  EXPECT_TRUE(merge("remembered.pbstream", places) == merged);
+  for (const char* const name : {"evening.places", "morning.places"}) {
+    EXPECT_TRUE(std::filesystem::last_write_time(File(name)) == long_ago);
+  }
+  // Of another map: described anew, with a warning.
+  const ProgramResult swapped = RunTestProgram(
+      {"merge", "--inputs", inputs, "--output", File("swapped.pbstream"),
+       "--places", File("morning.places") + "," + File("other.places"),
+       "--result", File("swapped.json")});
+  ASSERT_EQ(swapped.exit_code, 0) << swapped.error;
+  EXPECT_THAT(swapped.error, HasSubstr("has the places of another map"));
+  EXPECT_EQ(ParseFile("swapped.json")["warnings"][0]["code"],
+            "places_not_used");
+  EXPECT_TRUE(offices_->Read("swapped.pbstream") == merged);
+}
+
 TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
   const auto expect_error = [](const std::vector<std::string>& arguments,
                                const int exit_code,
@@ -234,6 +273,9 @@ TEST_F(SessionsTest, WrongUsageAndMissingFiles) {
           .output,
       HasSubstr("NOT in the merged map: not connected with the other "
                 "maps"));
+  expect_error({"merge", "--inputs", map + "," + offices_->Evening(),
+                "--output", File("x"), "--places", File("y")},
+               2, "--places takes as many files as there are inputs");
   // Maps without a flag, in any number.
   expect_error({"merge", map, offices_->Elsewhere(), "-o", File("x")}, 3,
                "no two of the maps are connected");
