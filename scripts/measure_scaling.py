@@ -6,10 +6,12 @@
 usage: measure_scaling.py PROGRAM JOIN DIRECTORY --drives 1,2,5,10 [--threads N]
                           [--wall] [--plot FILE.svg] [--work DIRECTORY]
                           [--configuration_directory DIRECTORY]
+       measure_scaling.py PROGRAM JOIN DIRECTORY --maps A.pbstream,B.pbstream ...
 
 PROGRAM is cartographer_sdf, JOIN test/benchmark/join_maps, DIRECTORY what
 scripts/make_campus.py has made. For each number of drives, joins so many of them
-to one map, closes its loops, and prints the CPU seconds of each stage (those of
+to one map, or takes the maps of --maps in DIRECTORY as they are, closes its
+loops, and prints the CPU seconds of each stage (those of
 the clock on the wall with --wall). At the end, the slope of each stage: the exponent of the
 number of submaps that fits its seconds best. --plot draws them.
 """
@@ -28,7 +30,16 @@ COLOURS = ['#1b6ca8', '#c2452d', '#3c8c40', '#8a4fa3', '#b07d00', '#5b5b5b',
 WIDTH, HEIGHT, MARGIN, LEGEND = 760, 480, 60, 190
 
 
-def map_of(join, directory, count, work):
+def maps_of(options, work):
+    """The paths of the maps to measure, each made when it is its turn."""
+    if options.maps:
+        return (os.path.join(options.directory, name)
+                for name in options.maps.split(','))
+    return (joined_map(options.join, options.directory, int(count), work)
+            for count in options.drives.split(','))
+
+
+def joined_map(join, directory, count, work):
     path = os.path.join(work, f'campus_{count}.pbstream')
     if not os.path.exists(path):
         drives = [os.path.join(directory, f'drive_{k:02}.pbstream')
@@ -137,6 +148,7 @@ def main():
     parser.add_argument('join')
     parser.add_argument('directory')
     parser.add_argument('--drives', default='1,2,5,10,20')
+    parser.add_argument('--maps')
     parser.add_argument('--threads', type=int, default=1)
     parser.add_argument('--configuration_directory')
     parser.add_argument('--wall', action='store_true')
@@ -150,8 +162,7 @@ def main():
         arguments += ['--configuration_directory', options.configuration_directory]
     clock = None if options.wall else cpu_clock(work)
     runs = []
-    for count in map(int, options.drives.split(',')):
-        path = map_of(options.join, options.directory, count, work)
+    for path in maps_of(options, work):
         runs.append(close_loops(options.program, path, arguments, clock, work))
         submaps, seconds, megabytes = runs[-1]
         stages = ', '.join(f'{name} {value:.2f}' for name, value in seconds.items())
