@@ -42,6 +42,9 @@ class InjectionGate {
   [[nodiscard]] int Settle();
   // Grows with each announcement.
   [[nodiscard]] int64_t num_announced() const { return num_announced_; }
+  // Of the hook that was added last. Once a round calls this one or a later
+  // one, all that was settled before has been reached.
+  [[nodiscard]] int newest_generation() const { return newest_generation_; }
   // Number of announced events that are not settled yet.
   [[nodiscard]] int num_unsettled() const { return num_unsettled_; }
 

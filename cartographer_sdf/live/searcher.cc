@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <utility>
 
 #include "cartographer_sdf/live/live_metrics.h"
@@ -214,6 +215,7 @@ void Searcher::FinishTrajectory(const int trajectory_id,
   if (is_shut_down_ || !is_known || found->second.is_finished) return;
   Trajectory& trajectory = found->second;
   trajectory.is_finished = true;
+  trajectory.complete_generation = gate_.newest_generation();
   // The growing submaps no longer change.
   if (!trajectory.is_trimmed) {
     for (const int index : trajectory.growing) {
@@ -252,7 +254,10 @@ void Searcher::ForgetTrajectory(const int trajectory_id) {
 }
 
 void Searcher::ForgetSubmap(const SubmapId& id) {
-  gone_.insert(id);
+  const auto trajectory = trajectories_.find(id.trajectory);
+  if (trajectory == trajectories_.end() || !trajectory->second.is_live) {
+    gone_.insert(id);
+  }
   submaps_.erase(id);
   for (LiveClosure& closure : closures_) {
     const PairPose& pair = closure.closure.match.pair;
@@ -269,12 +274,25 @@ void Searcher::ForgetSubmap(const SubmapId& id) {
   });
 }
 
+Searcher::LiveClosure Searcher::MakeLiveClosure(Closure closure) {
+  LiveClosure live;
+  live.num_inliers = static_cast<int>(closure.match.inliers.size());
+  live.num_constraints = static_cast<int>(closure.constraints.size());
+  live.closure = std::move(closure);
+  // Not clear(), which keeps the memory.
+  decltype(Match::inliers)().swap(live.closure.match.inliers);
+  decltype(Match::rivals)().swap(live.closure.match.rivals);
+  return live;
+}
+
 void Searcher::SetStatus(const ClosureStatus status,
                          LiveClosure* const closure) {
   if (closure->closure.status == status) return;
   closure->closure.status = status;
   TheMetrics().closures.Increment(status);
-  if (status != ClosureStatus::kReady) closure->closure.constraints.clear();
+  if (status != ClosureStatus::kReady) {
+    std::vector<Constraint>().swap(closure->closure.constraints);
+  }
 }
 
 void Searcher::LogClosure(const LiveClosure& closure) const {
@@ -283,17 +301,36 @@ void Searcher::LogClosure(const LiveClosure& closure) const {
   LOG(INFO) << "closure of submap " << match.pair.query << " with "
             << match.pair.reference << ": "
             << ClosureStatusName(closure.closure.status) << ", score "
-            << match.pair.score << ", " << match.inliers.size()
+            << match.pair.score << ", " << closure.num_inliers
             << " inliers, overlap " << match.evidence.overlap
             << ", wall distance " << match.evidence.WallDistance() << " m, "
             << closure.num_constraints << " constraints";
 }
 
+std::map<int, int> Searcher::CountSubmaps(
+    const std::map<int, int>& trajectory_ids) const {
+  const auto poses = pose_graph_->GetAllSubmapPoses();
+  std::map<int, int> num_submaps;
+  for (const auto& entry : trajectory_ids) {
+    const int trajectory_id = entry.second;
+    if (poses.SizeOfTrajectoryOrZero(trajectory_id) == 0) continue;
+    num_submaps[trajectory_id] =
+        (*std::prev(poses.EndOfTrajectory(trajectory_id))).id.submap_index + 1;
+  }
+  return num_submaps;
+}
+
 void Searcher::OnStateLoaded(const std::map<int, int>& trajectory_ids,
                              const bool is_frozen, const std::string& path) {
+  std::map<int, int> num_submaps;
+  if (pose_graph_ != nullptr) num_submaps = CountSubmaps(trajectory_ids);
   const absl::MutexLock lock(&mutex_);
   if (is_shut_down_) return;
-  for (const auto& entry : trajectory_ids) trajectories_[entry.second];
+  for (const auto& entry : trajectory_ids) {
+    Trajectory& trajectory = trajectories_[entry.second];
+    trajectory.num_submaps = num_submaps[entry.second];
+    trajectory.complete_generation = gate_.newest_generation();
+  }
   if (pose_graph_ == nullptr) return;
   has_map_ = true;
   for (auto& [id, trajectory] : trajectories_) {
@@ -393,8 +430,7 @@ std::vector<ClosureRecord> Searcher::GetClosures() const {
   std::vector<ClosureRecord> records;
   for (const LiveClosure& closure : closures_) {
     const Match& match = closure.closure.match;
-    records.push_back({match.pair, match.evidence,
-                       static_cast<int>(match.inliers.size()),
+    records.push_back({match.pair, match.evidence, closure.num_inliers,
                        closure.closure.status, closure.num_constraints});
   }
   return records;

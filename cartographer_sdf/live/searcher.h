@@ -30,6 +30,7 @@
 #include "cartographer/mapping/pose_graph_trimmer.h"
 #include "cartographer/mapping/trajectory_builder_interface.h"
 #include "cartographer_sdf/live/background_search.h"
+#include "cartographer_sdf/live/graph_submaps.h"
 #include "cartographer_sdf/live/host_conversion.h"
 #include "cartographer_sdf/live/injection_gate.h"
 #include "cartographer_sdf/live/live_options.h"
@@ -117,7 +118,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     bool is_live = false;     // its nodes pass through us
     bool is_trimmed = false;  // its submaps are removed when it ends
     bool is_finished = false;
-    int num_submaps = 0;
+    int num_submaps = 0;  // so far, trimmed ones among them
+    // Once a round calls a hook of this generation, all of them have entered
+    // the pose graph, and no more will.
+    std::optional<int> complete_generation;
     const cartographer::mapping::Submap* newest_submap = nullptr;
     std::vector<int> growing;  // indices of its submaps
     // Of the newest node.
@@ -134,9 +138,11 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     std::vector<NodeWithScan> scans;  // not yet passed to the worker
     std::optional<LocalizationResult> localization;
   };
-  // A recorded closure; holds its constraints while they wait.
+  // A recorded closure; holds its constraints while they wait. All are kept, so
+  // they are kept small: without the inliers and rivals of their match.
   struct LiveClosure {
     Closure closure;
+    int num_inliers = 0;
     int num_constraints = 0;
   };
   // Input of the worker's decision on closures, copied under the lock.
@@ -146,8 +152,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     std::map<SubmapId, OdometryPose> odometry;
     std::map<SubmapId, std::vector<SubmapNode>> nodes;
   };
-  // Known trajectories, and whether their nodes pass through us.
-  using AreLive = std::map<int, bool>;
+  // What a round has to know of a trajectory.
+  struct TrajectoryInRound {
+    bool is_live = false;
+    // Present if all have entered the pose graph, and no more will.
+    std::optional<int> num_submaps;
+  };
+  using TrajectoriesInRound = std::map<int, TrajectoryInRound>;
   using HostNodes =
       cartographer::mapping::MapById<cartographer::mapping::NodeId,
                                      cartographer::mapping::TrajectoryNode>;
@@ -172,6 +183,11 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void BeginSearch(int trajectory_id, Trajectory* trajectory)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Of trajectories that were just loaded: one more than the last index.
+  [[nodiscard]] std::map<int, int> CountSubmaps(
+      const std::map<int, int>& trajectory_ids) const
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  [[nodiscard]] static LiveClosure MakeLiveClosure(Closure closure);
   void ForgetSubmap(const SubmapId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void SetStatus(ClosureStatus status, LiveClosure* closure)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -182,9 +198,9 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   }
 
   // Parts of EnterRound.
-  NodeCounts CountNodes(const AreLive& are_live,
+  NodeCounts CountNodes(const TrajectoriesInRound& trajectories,
                         const cartographer::mapping::Trimmable& graph);
-  std::vector<SubmapId> FindGone(const AreLive& are_live,
+  std::vector<SubmapId> FindGone(const TrajectoriesInRound& trajectories,
                                  const cartographer::mapping::Trimmable& graph);
   // Injects the constraints of ready closures whose submaps and nodes exist.
   void InjectReady(const std::function<bool(const SubmapId&)>& has_submap,
@@ -240,13 +256,14 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   std::map<SubmapId, SubmapRecord> submaps_ ABSL_GUARDED_BY(mutex_);
   std::vector<LiveClosure> closures_ ABSL_GUARDED_BY(mutex_);
   std::deque<RefusedMatch> refused_ ABSL_GUARDED_BY(mutex_);
+  // Of loaded trajectories, so that the worker does not add them later.
   std::set<SubmapId> gone_ ABSL_GUARDED_BY(mutex_);
   LiveSummary summary_ ABSL_GUARDED_BY(mutex_);
   std::vector<float> callback_seconds_ ABSL_GUARDED_BY(mutex_);
 
   // Used only in rounds, which the host's mutex serialises.
   std::map<int, int> newest_node_done_;
-  std::map<int, std::set<int>> submaps_in_graph_;
+  GraphSubmaps submaps_in_graph_;
 
   // Used only by the worker's tasks.
   BackgroundSearch search_;

@@ -22,18 +22,23 @@ bool Searcher::IsHookObsolete(const int generation) const {
 
 void Searcher::EnterRound(mapping::Trimmable* const graph,
                           const int generation) {
-  AreLive are_live;
+  TrajectoriesInRound trajectories;
   {
     const absl::MutexLock lock(&mutex_);
     if (is_shut_down_) return;
     for (const auto& [id, trajectory] : trajectories_) {
-      are_live[id] = trajectory.is_live;
+      TrajectoryInRound& copy = trajectories[id];
+      copy.is_live = trajectory.is_live;
+      if (trajectory.complete_generation &&
+          generation >= *trajectory.complete_generation) {
+        copy.num_submaps = trajectory.num_submaps;
+      }
     }
   }
   // Without our mutex, so that sensor threads do not wait for it. No node is
   // added meanwhile, because the host's mutex is held.
-  const NodeCounts counts = CountNodes(are_live, *graph);
-  const std::vector<SubmapId> gone = FindGone(are_live, *graph);
+  const NodeCounts counts = CountNodes(trajectories, *graph);
+  const std::vector<SubmapId> gone = FindGone(trajectories, *graph);
   const absl::MutexLock lock(&mutex_);
   if (is_shut_down_) return;
   for (const SubmapId& id : gone) ForgetSubmap(id);
@@ -42,29 +47,25 @@ void Searcher::EnterRound(mapping::Trimmable* const graph,
     return;
   }
   InjectReady(
-      [this](const SubmapId& id) {
-        const auto submaps = submaps_in_graph_.find(id.trajectory);
-        return submaps != submaps_in_graph_.end() &&
-               submaps->second.count(id.index) > 0;
-      },
+      [this](const SubmapId& id) { return submaps_in_graph_.Contains(id); },
       graph->GetTrajectoryNodes());
 }
 
 // A node is done when it has its intra-submap constraints.
-Searcher::NodeCounts Searcher::CountNodes(const AreLive& are_live,
-                                          const mapping::Trimmable& graph) {
+Searcher::NodeCounts Searcher::CountNodes(
+    const TrajectoriesInRound& trajectories, const mapping::Trimmable& graph) {
   const auto& nodes = graph.GetTrajectoryNodes();
   NodeCounts counts;
   std::map<int, int> newest, unknown;
   for (const int trajectory : nodes.trajectory_ids()) {
-    const auto is_live = are_live.find(trajectory);
-    if (is_live == are_live.end()) {
+    const auto found = trajectories.find(trajectory);
+    if (found == trajectories.end()) {
       // Unknown trajectory: any of its nodes may be waiting.
       counts.num_waiting +=
           static_cast<int64_t>(nodes.SizeOfTrajectoryOrZero(trajectory));
       continue;
     }
-    if (!is_live->second) continue;
+    if (!found->second.is_live) continue;
     newest[trajectory] =
         (*std::prev(nodes.EndOfTrajectory(trajectory))).id.node_index;
     const int done = newest_node_done_.emplace(trajectory, -1).first->second;
@@ -89,24 +90,28 @@ Searcher::NodeCounts Searcher::CountNodes(const AreLive& are_live,
   return counts;
 }
 
-std::vector<SubmapId> Searcher::FindGone(const AreLive& are_live,
-                                         const mapping::Trimmable& graph) {
+std::vector<SubmapId> Searcher::FindGone(
+    const TrajectoriesInRound& trajectories, const mapping::Trimmable& graph) {
   std::vector<SubmapId> gone;
-  for (const auto& [trajectory, is_live] : are_live) {
-    std::set<int>& known = submaps_in_graph_[trajectory];
-    // Loaded trajectories do not grow.
-    if (!is_live && !known.empty() &&
-        graph.num_submaps(trajectory) == static_cast<int>(known.size())) {
+  for (const auto& [id, trajectory] : trajectories) {
+    if (trajectory.num_submaps &&
+        submaps_in_graph_.IsUpToDate(id,
+                                     static_cast<size_t>(graph.num_submaps(id)),
+                                     *trajectory.num_submaps)) {
       continue;
     }
-    std::set<int> now;
-    for (const mapping::SubmapId& id : graph.GetSubmapIds(trajectory)) {
-      now.insert(id.submap_index);
+    std::vector<int> indices;
+    for (const mapping::SubmapId& submap : graph.GetSubmapIds(id)) {
+      indices.push_back(submap.submap_index);
     }
-    for (const int index : known) {
-      if (now.count(index) == 0) gone.push_back({trajectory, index});
+    int num_entered = trajectory.num_submaps.value_or(0);
+    // A file may have loaded submaps in any order.
+    if (trajectory.is_live && !indices.empty()) {
+      num_entered = std::max(num_entered, indices.back() + 1);
     }
-    known = std::move(now);
+    for (const int index : submaps_in_graph_.Update(id, indices, num_entered)) {
+      gone.push_back({id, index});
+    }
   }
   return gone;
 }
@@ -120,7 +125,7 @@ void Searcher::InjectReady(
     int num_constraints = 0;
     bool is_gone = false;
     for (const Constraint& constraint : closure.closure.constraints) {
-      is_gone = is_gone || gone_.count(constraint.submap) > 0;
+      is_gone = is_gone || submaps_.count(constraint.submap) == 0;
       const auto node = nodes.find(ToHost(constraint.node));
       if (!has_submap(constraint.submap) || node == nodes.end() ||
           (*node).data.constant_data == nullptr) {

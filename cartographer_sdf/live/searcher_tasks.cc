@@ -138,7 +138,8 @@ bool Searcher::AddClosures(const SubmapId& id,
       if (refused_.size() > kMaxNumRefused) refused_.pop_front();
       continue;
     }
-    closures_.push_back({{match, ClosureStatus::kUnsupported, {}, {}}, 0});
+    closures_.push_back(
+        MakeLiveClosure({match, ClosureStatus::kUnsupported, {}, {}}));
     has_closures = true;
   }
   return has_closures;
@@ -378,9 +379,7 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
   // kidnapping would pull against those from after it.
   const bool may_inject = MayInject() && !trajectory.was_localized;
   for (const Closure& found : query.closures) {
-    LiveClosure closure;
-    closure.closure = found;
-    closure.num_constraints = static_cast<int>(found.constraints.size());
+    LiveClosure closure = MakeLiveClosure(found);
     SetStatus(may_inject ? ClosureStatus::kReady : ClosureStatus::kDetectedOnly,
               &closure);
     LogClosure(closure);

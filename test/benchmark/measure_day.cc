@@ -6,7 +6,10 @@
 // trajectories are deleted, overlapping submaps trimmed, maps saved. Prints a
 // CSV with a line for every hundred or so submaps, for scripts/measure_day.py.
 //
-// usage: measure_day [NUM_SUBMAPS [SEED]]
+// usage: measure_day [NUM_SUBMAPS [SEED [alone]]]
+//
+// With `alone`, Cartographer runs without the searcher, for what it takes by
+// itself.
 
 #include <unistd.h>
 
@@ -23,6 +26,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cartographer_sdf/live/map_builder.h"
@@ -40,6 +44,7 @@ using State = mapping::PoseGraphInterface::TrajectoryState;
 
 // Submaps of two scans.
 constexpr int kScansOfAShift = 220;
+constexpr double kSecondsPerScan = 0.3;  // as FeedScanOfARoom() has it
 constexpr size_t kNumKeptTrajectories = 2;
 constexpr int kShiftsPerSave = 5;
 // Carried to the other side of the room.
@@ -91,29 +96,31 @@ void WriteMapOfTheRoom(const std::string& path) {
 
 class Day {
  public:
-  explicit Day(const unsigned seed) : engine_(seed) {
+  Day(const unsigned seed, const bool is_alone) : engine_(seed) {
     const std::string map = directory_.File("map.pbstream");
     WriteMapOfTheRoom(map);
-    builder_ = CreateMapBuilder(mapping::CreateMapBuilder(stock_.map_builder),
-                                testing::EagerOptions(),
-                                [this](const LocalizationResult& result) {
-                                  num_localized_ += result.localized ? 1 : 0;
-                                });
+    LiveOptions options = testing::EagerOptions();
+    options.enabled = !is_alone;
+    builder_ =
+        CreateMapBuilder(mapping::CreateMapBuilder(stock_.map_builder), options,
+                         [this](const LocalizationResult& result) {
+                           num_localized_ += result.localized ? 1 : 0;
+                         });
     live_ = AsLiveMapBuilder(builder_.get());
     builder_->LoadStateFromFile(map, /*load_frozen_state=*/true);
-    std::cout << "submaps,trajectories,places,waiting,resident_mb,scan_mean_ms,"
-                 "scan_max_ms,scan_mean_cpu_ms,callback_mean_us,worker_ms_per_"
-                 "submap,closures,"
-                 "localized,kidnaps,deletions,saves\n";
+    std::cout
+        << "hours,submaps,trajectories,places,waiting,resident_mb,scan_mean_ms,"
+           "scan_max_ms,scan_mean_cpu_ms,callback_mean_us,worker_ms_per_"
+           "submap,closures,"
+           "localized,kidnaps,deletions,saves\n";
   }
 
   void Run(const int num_submaps) {
-    for (int shift = 0; live_->GetSummary().num_submaps < num_submaps;
-         ++shift) {
+    for (int shift = 0; GetSummary().num_submaps < num_submaps; ++shift) {
       Shift(/*is_trimmed=*/shift % 2 == 1);
       if (shift % kShiftsPerSave == 0) Save();
       DeleteOldTrajectories();
-      live_->WaitUntilIdle();
+      if (live_ != nullptr) live_->WaitUntilIdle();
       PrintLine();
     }
     builder_->pose_graph()->RunFinalOptimization();
@@ -121,6 +128,14 @@ class Day {
   }
 
  private:
+  // A submap is begun every two scans.
+  [[nodiscard]] LiveSummary GetSummary() const {
+    if (live_ != nullptr) return live_->GetSummary();
+    LiveSummary summary;
+    summary.num_submaps = num_trajectories_ * kScansOfAShift / 2;
+    return summary;
+  }
+
   // One drive; half of them are carried away in their middle.
   void Shift(const bool is_trimmed) {
     auto options = stock_.trajectory_builder;
@@ -135,7 +150,7 @@ class Day {
     for (int k = 0; k < kScansOfAShift; ++k) {
       if (is_carried && k == kScansOfAShift / 2) {
         phase += kCarriedBy;
-        live_->Localize(id);
+        if (live_ != nullptr) live_->Localize(id);
         ++num_kidnaps_;
       }
       const double begin = Seconds(), cpu_begin = CpuSeconds();
@@ -145,6 +160,15 @@ class Day {
     }
     builder_->FinishTrajectory(id);
     if (!is_trimmed) finished_.push_back(id);
+    WaitForTheHost(id);
+  }
+
+  // Until the end of the trajectory has reached its queue.
+  void WaitForTheHost(const int id) const {
+    while (builder_->pose_graph()->GetTrajectoryStates().at(id) ==
+           State::ACTIVE) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
   }
 
   void Save() {
@@ -155,10 +179,7 @@ class Day {
 
   void DeleteOldTrajectories() {
     mapping::PoseGraphInterface* const graph = builder_->pose_graph();
-    // The host aborts by itself where the end has not reached its queue.
-    while (finished_.size() > kNumKeptTrajectories &&
-           graph->GetTrajectoryStates().at(finished_.front()) ==
-               State::FINISHED) {
+    while (finished_.size() > kNumKeptTrajectories) {
       graph->DeleteTrajectory(finished_.front());
       finished_.pop_front();
       ++num_deletions_;
@@ -167,7 +188,7 @@ class Day {
 
   // Of the time since the last line.
   void PrintLine() {
-    const LiveSummary now = live_->GetSummary();
+    const LiveSummary now = GetSummary();
     double sum = 0., longest = 0.;
     for (const double seconds : scan_seconds_) {
       sum += seconds;
@@ -178,7 +199,8 @@ class Day {
     const double callbacks =
         now.callback_mean_seconds * static_cast<double>(now.num_callbacks) -
         last_.callback_mean_seconds * static_cast<double>(last_.num_callbacks);
-    std::cout << now.num_submaps << "," << num_trajectories_ << ","
+    std::cout << num_trajectories_ * kScansOfAShift * kSecondsPerScan / 3600.
+              << "," << now.num_submaps << "," << num_trajectories_ << ","
               << now.num_places << "," << now.num_waiting_tasks << ","
               << ResidentMegabytes() << "," << 1e3 * sum / num_scans << ","
               << 1e3 * longest << "," << 1e3 * scan_cpu_seconds_ / num_scans
@@ -219,6 +241,7 @@ int main(int argc, char** argv) {
   const int num_submaps = argc > 1 ? std::atoi(argv[1]) : 10000;
   const unsigned seed =
       argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1;
-  cartographer_sdf::Day(seed).Run(num_submaps);
+  const bool is_alone = argc > 3 && std::string(argv[3]) == "alone";
+  cartographer_sdf::Day(seed, is_alone).Run(num_submaps);
   return EXIT_SUCCESS;
 }
