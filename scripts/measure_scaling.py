@@ -94,13 +94,22 @@ def lines_of(runs):
             if max(y for _, y in points) >= MIN_SECONDS}
 
 
+def ticks_around(values):
+    """Of the numbers 1, 2, 5, 10, 20, ... those from below to above the values."""
+    powers = range(math.floor(math.log10(min(values))) - 1,
+                   math.ceil(math.log10(max(values))) + 1)
+    ticks = [digit * 10. ** power for power in powers for digit in (1, 2, 5)]
+    first = max(k for k, tick in enumerate(ticks) if tick <= min(values))
+    last = min(k for k, tick in enumerate(ticks) if tick >= max(values))
+    return ticks[first:last + 1]
+
+
 def draw(lines, path):
     """Both axes are logarithmic."""
     points = [point for line in lines.values() for point in line if point[1] > 0.]
-    lows = [10. ** math.floor(math.log10(min(p[axis] for p in points)))
-            for axis in (0, 1)]
-    highs = [10. ** math.ceil(math.log10(max(p[axis] for p in points)))
-             for axis in (0, 1)]
+    ticks = [ticks_around([p[axis] for p in points]) for axis in (0, 1)]
+    lows = [ticks[axis][0] for axis in (0, 1)]
+    highs = [ticks[axis][-1] for axis in (0, 1)]
     inner = (WIDTH - 2 * MARGIN - LEGEND, HEIGHT - 2 * MARGIN)
 
     def at(x, y):
@@ -112,9 +121,7 @@ def draw(lines, path):
            f'font-family="sans-serif" font-size="12">',
            f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>']
     for axis in (0, 1):
-        for power in range(round(math.log10(lows[axis])),
-                           round(math.log10(highs[axis])) + 1):
-            tick = 10. ** power
+        for tick in ticks[axis]:
             begin = at(tick, lows[1]) if axis == 0 else at(lows[0], tick)
             end = at(tick, highs[1]) if axis == 0 else at(highs[0], tick)
             svg.append(f'<path d="M{begin[0]:.1f} {begin[1]:.1f}L{end[0]:.1f} '
@@ -125,7 +132,10 @@ def draw(lines, path):
                        f'{tick:g}</text>')
     svg.append(f'<text x="{MARGIN + inner[0] / 2:.0f}" y="{HEIGHT - 15}" '
                'text-anchor="middle">submaps</text>')
-    svg.append(f'<text x="{MARGIN}" y="{MARGIN - 20}" text-anchor="middle">s</text>')
+    svg.append(f'<text x="{MARGIN}" y="{MARGIN - 20}" text-anchor="middle">'
+               'seconds</text>')
+    svg.append(f'<text x="{WIDTH - LEGEND - MARGIN + 20}" y="{MARGIN - 20}">'
+               'stage: exponent</text>')
     for k, (name, line) in enumerate(lines.items()):
         colour = COLOURS[k % len(COLOURS)]
         places = [at(x, y) for x, y in line if y > 0.]

@@ -54,6 +54,11 @@ int Measure(const std::string& path, const std::string& places_path) {
   Run("read the map", [&] { (void)ReadMap(path, {}).status(); });
   Run("read the map with its scans",
       [&] { (void)ReadMapWithScans(path).status(); });
+  Run("read and describe the map with its scans instead", [&] {
+    (void)DescribeMap(options, match, path, MakeExecutor(1), {},
+                      PointClouds::kKeep)
+        .status();
+  });
   if (!places.ok()) return EXIT_FAILURE;
   Run("bound the memory of fields",
       [&] { FieldMemory(options).Add(&*places); });

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests scripts/measure_scaling.py and scripts/make_campus.py, without a drive."""
 
+import argparse
 import os
 import sys
 import tempfile
@@ -29,6 +30,17 @@ class MeasureScalingTest(unittest.TestCase):
     def test_leaves_out_stages_that_take_no_time(self):
         self.assertEqual(measure_scaling.lines_of(RUNS),
                          {'match': [(100, 1.), (400, 4.)]})
+
+    def test_ticks_enclose_the_values(self):
+        self.assertEqual(measure_scaling.ticks_around([3., 40.]), [2., 5., 10., 20., 50.])
+        self.assertEqual(measure_scaling.ticks_around([100., 200.]), [100., 200.])
+        self.assertEqual(measure_scaling.ticks_around([7.]), [5., 10.])
+
+    def test_takes_maps_as_they_are(self):
+        options = argparse.Namespace(maps='a.pbstream,b.pbstream', directory='maps')
+        self.assertEqual(list(measure_scaling.maps_of(options, 'work')),
+                         [os.path.join('maps', name)
+                          for name in ('a.pbstream', 'b.pbstream')])
 
     def test_draws_each_stage_with_its_slope(self):
         with tempfile.TemporaryDirectory() as directory:
