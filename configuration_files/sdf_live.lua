@@ -56,6 +56,12 @@ SDF_LIVE = {
     -- [m], [rad] Poses that differ by less agree.
     max_translation_difference_meters = 0.5,
     max_rotation_difference = 0.1,
+    -- Whether each scan by itself is compared with the whole map, too. true:
+    -- robots are found sooner, and noticed to be lost; more CPU time and up to
+    -- 30 MB.
+    compare_scans = false,
+    scan_localization = SDF_GLOBAL_CONSTRAINTS.scan_localization,
+    scan_session = SDF_GLOBAL_CONSTRAINTS.scan_session,
   },
 }
 

@@ -5,14 +5,17 @@
 
 usage: measure_live.py mapping RESULT.json [LOG ...]
        measure_live.py localization RESULT.json [--starts N] [--seconds S] [--factor F]
+                                    [--drive NAME] [--map NAME] [--closed 1]
        measure_live.py report RESULT.json [RESULT.json ...]
 
 mapping drives whole recordings (default: intel aces mit_killian) through
 Cartographer alone, with the searcher in place of its loop search, and with
-both. localization drives pieces of willow_2 through the frozen map of willow_1,
-with the searcher and with Cartographer's own global search: N pieces (20) of S
-seconds (60) at F times real time (1). Both append to
-RESULT.json what they measured; report prints it as Markdown.
+both. localization drives pieces of a recording (willow_2) through a frozen map
+(willow_1), with the searcher, with scans compared with the map in addition, and
+with Cartographer's own global search: N pieces (20) of S seconds (60) at F times
+real time (1). Of another building than the map's, every answer is wrong. With
+--closed 1, the loops of the map are closed first. Both append to RESULT.json what
+they measured; report prints it as Markdown.
 
 Environment: BUILD_DIR (default: build beside scripts/), DATA_DIR (default:
 ../shared/data), HOST_CONFIGURATION (a directory for Cartographer's own Lua files,
@@ -57,7 +60,12 @@ POSE_GRAPH.global_sampling_ratio = {ratio}
 POSE_GRAPH.global_constraint_search_after_n_seconds = 10.
 return options
 """
-LOCALIZATION = {"searcher": None, "stock 0.003": "0.003", "stock 1.0": "1."}
+COMPARED_SCANS = """include "sdf_live.lua"
+SDF_LIVE.localization.compare_scans = {value}
+return SDF_LIVE
+"""
+LOCALIZATION = {"searcher": None, "searcher and scans": None, "stock 0.003": "0.003",
+                "stock 1.0": "1."}
 RIGHT_M, WRONG_M, RIGHT_DEGREES = 0.5, 1.0, 10.0
 # From year 1 to 1970, in seconds: the host's time and ours.
 EPOCH = 719162 * 24 * 3600
@@ -190,15 +198,37 @@ def inverse(a):
     return (-c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2])
 
 
-class WillowTruth:
-    """Where the robot of willow_2 really was in the map of willow_1."""
+class OtherBuilding:
+    """The truth of a robot that is not in the map."""
 
-    def __init__(self):
-        submaps, _ = read_pose_graph(DATA / "willow_1.pbstream")
-        world = read_truth(DATA / "willow_1.truth.csv", "submap")
+    def __init__(self, drive):
+        _, times = read_pose_graph(map_of(drive))
+        self.times = sorted(times.values())
+
+    def in_map(self, time):
+        """Nowhere."""
+        return (math.inf, math.inf, 0.0)
+
+    def error(self, node):
+        """As Truth.error."""
+        return (math.inf, 0.0)
+
+
+def map_of(name):
+    """Its map by Cartographer, or, where there is none, that without loops."""
+    path = DATA / f"{name}.pbstream"
+    return path if path.exists() else DATA / f"{name}_open_loop.pbstream"
+
+
+class Truth:
+    """Where the robot of a drive really was in a map of the same building."""
+
+    def __init__(self, drive, map_name, map_path):
+        submaps, _ = read_pose_graph(map_path)
+        world = read_truth(DATA / f"{map_name}.truth.csv", "submap")
         self.submaps = [(world[i], pose) for i, pose in submaps.items() if i in world]
-        _, times = read_pose_graph(DATA / "willow_2.pbstream")
-        nodes = read_truth(DATA / "willow_2.truth.csv", "node")
+        _, times = read_pose_graph(map_of(drive))
+        nodes = read_truth(DATA / f"{drive}.truth.csv", "node")
         self.nodes = sorted((times[i], pose) for i, pose in nodes.items() if i in times)
         self.times = [time for time, _ in self.nodes]
 
@@ -249,28 +279,39 @@ def judge(truth, run, nodes):
     return row
 
 
-def measure_localization(results, num_starts, seconds, factor):
+def measure_localization(results, num_starts, seconds, factor, drive, map_name, is_closed):
     """One row for each start and variant."""
-    truth = WillowTruth()
-    length = truth.times[-1] - truth.times[0] - seconds
     # A copy, as the searcher leaves a file of places beside the map.
     copy = tempfile.TemporaryDirectory(dir=os.environ.get("WORK_DIR"))
-    frozen_map = shutil.copy(DATA / "willow_1.pbstream", copy.name)
+    frozen_map = os.path.join(copy.name, "map.pbstream")
+    if is_closed:
+        subprocess.run([str(BUILD / "cartographer_sdf"), "close_loops", str(map_of(map_name)),
+                        "-o", frozen_map], check=True, stdout=subprocess.DEVNULL)
+    else:
+        shutil.copy(map_of(map_name), frozen_map)
+    is_same = drive.split("_")[0] == map_name.split("_")[0]
+    truth = Truth(drive, map_name, frozen_map) if is_same else OtherBuilding(drive)
+    length = truth.times[-1] - truth.times[0] - seconds
     for k in range(num_starts):
         start = round(length * k / max(1, num_starts - 1), 1)
         for variant, ratio in chosen(LOCALIZATION).items():
             with tempfile.TemporaryDirectory(dir=os.environ.get("WORK_DIR")) as directory:
                 work = pathlib.Path(directory)
-                host = "cartographer_localization.lua"
-                if ratio is not None:
+                host, searcher = "cartographer_localization.lua", ""
+                if ratio is None:
+                    searcher = "measured_live.lua"
+                    (work / searcher).write_text(COMPARED_SCANS.format(
+                        value=str(variant != "searcher").lower()))
+                else:
                     host = "stock_localization.lua"
                     (work / host).write_text(STOCK_LOCALIZATION.format(ratio=ratio))
                 run, nodes = run_log(
-                    work, log=DATA / "willow_2.log.gz", map=frozen_map,
+                    work, log=DATA / f"{drive}.log.gz", map=frozen_map,
                     configuration_basename=host, start=start, duration=seconds,
-                    sdf_configuration_basename="" if ratio else "sdf_live.lua",
+                    sdf_configuration_basename=searcher,
                     real_time_factor=factor)
             row = {"kind": "localization", "variant": variant, "start": start, "factor": factor,
+                   "drive": drive, "map": map_name, "closed": is_closed,
                    "max_delay_seconds": run["max_delay_seconds"],
                    "localizations": run["localizations"], "all_cpu_seconds": run["cpu_seconds"]}
             row.update(judge(truth, run, nodes))
@@ -315,8 +356,13 @@ def report_localization(rows):
     print("\n| | starts | right | near | wrong | not localised | until the first constraint:"
           " [m] | [s] | CPU [s] | until the pose is right: [m] | [s] | last error [m] |"
           "\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
-    for variant in dict.fromkeys(row["variant"] for row in rows):
-        mine = [row for row in rows if row["variant"] == variant]
+    def name_of(row):
+        drive, map_name = row.get("drive", "willow_2"), row.get("map", "willow_1")
+        closed = "closed " if row.get("closed") else ""
+        return f"{drive} in {closed}{map_name}, {row['variant']}"
+
+    for variant in dict.fromkeys(map(name_of, rows)):
+        mine = [row for row in rows if name_of(row) == variant]
         cells = [len(mine)] + [sum(row["verdict"] == verdict for row in mine)
                                for verdict in ("right", "near", "wrong", "not localised")]
         for moment, keys in (("connected", ("meters", "seconds", "cpu_seconds")),
@@ -338,7 +384,7 @@ def option(arguments, name, default):
     if name not in arguments:
         return default
     i = arguments.index(name)
-    value = float(arguments[i + 1])
+    value = type(default)(arguments[i + 1])
     del arguments[i:i + 2]
     return value
 
@@ -357,14 +403,18 @@ def main():
             if mine:
                 function(mine)
         return 0
-    num_starts = int(option(arguments, "--starts", 20))
+    num_starts = option(arguments, "--starts", 20)
+    drive = option(arguments, "--drive", "willow_2")
+    map_name = option(arguments, "--map", "willow_1")
+    is_closed = option(arguments, "--closed", 0) > 0
     seconds = option(arguments, "--seconds", 60.0)
     factor = option(arguments, "--factor", 1.0)
     path = pathlib.Path(arguments[1])
     results = json.loads(path.read_text()) if path.exists() else []
     steps = (measure_mapping(results, arguments[2:] or ["intel", "aces", "mit_killian"])
              if arguments[0] == "mapping"
-             else measure_localization(results, num_starts, seconds, factor))
+             else measure_localization(results, num_starts, seconds, factor, drive, map_name,
+                                       is_closed))
     for _ in steps:
         # After each, as they take long.
         path.write_text(json.dumps(results, indent=1))

@@ -4,6 +4,7 @@
 #include "cartographer_sdf/live/background_search.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "cartographer_sdf/execution/parallel_for.h"
@@ -19,6 +20,9 @@ namespace {
 // Maximum number of submaps of the map that are matched with the nodes of a
 // localised trajectory.
 constexpr size_t kMaxLocalizationClosures = 3;
+
+// Submaps of the map that are compared with a pose that was found otherwise.
+constexpr size_t kMaxNumNearSubmaps = 10;
 
 // The host has cut beams without a return to its configured length.
 ScanGridOptions GridOptions(const LiveLocalizationOptions& options) {
@@ -42,6 +46,23 @@ MapLayout LayoutOf(const std::map<SubmapId, Place>& places) {
   PoseGraph graph;
   for (const auto& [id, place] : places) graph.submap_poses[id] = Rigid2();
   return MakeMapLayout(graph, {}, places);
+}
+
+// The ids of the submaps whose middles are nearest to a point, nearest first.
+std::vector<SubmapId> NearestSubmaps(const MapLayout& map,
+                                     const Eigen::Vector2d& p_map) {
+  std::vector<std::pair<double, SubmapId>> distances;
+  for (const auto& [id, T_map_submap] : map.T_map_submap) {
+    const auto centroid = map.centroids.find(id);
+    if (centroid == map.centroids.end()) continue;
+    distances.emplace_back((T_map_submap * centroid->second - p_map).norm(),
+                           id);
+  }
+  std::sort(distances.begin(), distances.end());
+  distances.resize(std::min(distances.size(), kMaxNumNearSubmaps));
+  std::vector<SubmapId> ids;
+  for (const auto& entry : distances) ids.push_back(entry.second);
+  return ids;
 }
 
 // Of the best placement; zero if there is none.
@@ -148,6 +169,21 @@ void BackgroundSearch::AddScans(const int trajectory_id,
   }
 }
 
+NodeData BackgroundSearch::NewestNode(const int trajectory_id) const {
+  const auto found = local_searches_.find(trajectory_id);
+  if (found == local_searches_.end() || found->second.nodes.empty()) {
+    return nullptr;
+  }
+  return found->second.nodes.back();
+}
+
+std::optional<Place> BackgroundSearch::DescribeGrowing(
+    const int trajectory_id, const LocalSearch& search) const {
+  const std::optional<OccupancyGrid> grid = search.grid.Copy();
+  if (!grid) return std::nullopt;
+  return Describe({trajectory_id, kGrowingSubmapIndex}, *grid);
+}
+
 BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
                                                    const MapLayout& map) {
   Query query;
@@ -155,12 +191,9 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
   const auto found = local_searches_.find(trajectory_id);
   if (found == local_searches_.end()) return query;
   LocalSearch& search = found->second;
-  const std::optional<OccupancyGrid> grid = search.grid.Copy();
-  if (!grid) return query;
-  query.T_local_query = search.grid.T_local_submap();
-  const std::optional<Place> place =
-      Describe({trajectory_id, kGrowingSubmapIndex}, *grid);
+  const std::optional<Place> place = DescribeGrowing(trajectory_id, search);
   if (!place) return query;
+  query.T_local_query = search.grid.T_local_submap();
   const std::map<SubmapId, Place> query_places = {{place->id, *place}};
   const MapLayout query_layout = LayoutOf(query_places);
   const LiveLocalizationOptions& options = options_.localization;
@@ -187,6 +220,56 @@ BackgroundSearch::Query BackgroundSearch::Localize(const int trajectory_id,
     CloseWithMap(search, *place, &query);
   }
   return query;
+}
+
+BackgroundSearch::Query BackgroundSearch::ConfirmPose(
+    const int trajectory_id, const MapLayout& map,
+    const Rigid2& T_map_local) const {
+  Query query;
+  query.localization.verdict = LocalizationVerdict::kUncertain;
+  const auto found = local_searches_.find(trajectory_id);
+  if (found == local_searches_.end()) return query;
+  const LocalSearch& search = found->second;
+  const std::optional<Place> place = DescribeGrowing(trajectory_id, search);
+  if (!place) return query;
+  query.T_local_query = search.grid.T_local_submap();
+  Placement placement;
+  placement.T_map_query = T_map_local * query.T_local_query;
+  const Rigid2 T_query_tracking =
+      query.T_local_query.Inverse() * FromHost(search.nodes.back()->local_pose);
+  query.localization.matches =
+      MatchAt(map, *place, placement.T_map_query, T_query_tracking);
+  if (query.localization.matches.empty()) return query;
+  placement.votes.resize(query.localization.matches.size());
+  std::iota(placement.votes.begin(), placement.votes.end(), size_t{0});
+  query.localization.placements.push_back(std::move(placement));
+  CloseWithMap(search, *place, &query);
+  return query;
+}
+
+std::vector<Match> BackgroundSearch::MatchAt(
+    const MapLayout& map, const Place& query, const Rigid2& T_map_query,
+    const Rigid2& T_query_tracking) const {
+  std::vector<Match> matches;
+  const Eigen::Vector2d& p_query = T_query_tracking.translation();
+  for (const SubmapId& id : NearestSubmaps(map, T_map_query * p_query)) {
+    const Place& reference = places().at(id);
+    const Rigid2 claimed = map.T_map_submap.at(id).Inverse() * T_map_query;
+    std::optional<VerifiedPose> verified =
+        VerifyClaim(options_.match.verification, reference.surface,
+                    query.surface, claimed, {});
+    // A few scans show too little for a match to be accepted by itself.
+    if (!verified || verified->verdict == Verdict::kContradicted ||
+        verified->verdict == Verdict::kTooLittleOverlap ||
+        !AreNear(verified->T_reference_query, claimed, p_query,
+                 {options_.localization.max_translation_difference_meters,
+                  options_.localization.max_rotation_difference})) {
+      continue;
+    }
+    matches.push_back(
+        MakeMatch(options_.match, reference, query, *std::move(verified)));
+  }
+  return matches;
 }
 
 void BackgroundSearch::CountCertain(const Rigid2& T_local_query,

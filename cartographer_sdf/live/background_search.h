@@ -93,6 +93,14 @@ class BackgroundSearch {
     // of the trajectory's nodes.
     std::vector<Closure> closures;
   };
+  // Of the newest scan; null if there is none.
+  [[nodiscard]] NodeData NewestNode(int trajectory_id) const;
+  // What Localize() says once enough queries agree, of a pose in the map that
+  // was found otherwise: the submaps near it that do not contradict it and
+  // whose walls, registered, leave it where it is. Without closures if the
+  // scans of too few nodes fit there.
+  [[nodiscard]] Query ConfirmPose(int trajectory_id, const MapLayout& map,
+                                  const Rigid2& T_map_local) const;
   // Localises the trajectory among the remembered submaps of the layout. The
   // trajectory must have scans.
   [[nodiscard]] Query Localize(int trajectory_id, const MapLayout& map);
@@ -105,6 +113,13 @@ class BackgroundSearch {
     std::optional<Rigid2> T_map_local;  // of the latest certain query
     int num_certain = 0;
   };
+  // The growing submap; none if it shows no walls.
+  [[nodiscard]] std::optional<Place> DescribeGrowing(
+      int trajectory_id, const LocalSearch& search) const;
+  // Of the growing submap with submaps of the map around its newest node.
+  [[nodiscard]] std::vector<Match> MatchAt(
+      const MapLayout& map, const Place& query, const Rigid2& T_map_query,
+      const Rigid2& T_query_tracking) const;
   void CountCertain(const Rigid2& T_local_query, LocalSearch* search,
                     Query* query) const;
   void CloseWithMap(const LocalSearch& search, const Place& place,

@@ -77,6 +77,16 @@ DrivenScan MakeDrivenScan(const mapping::NodeId& id,
                     distance_driven};
 }
 
+OdometryScan MakeOdometryScan(const mapping::TrajectoryNode::Data& node,
+                              const DrivenScan& scan) {
+  const Rigid2 T_local_tracking = FromHost(node.local_pose);
+  return OdometryScan{
+      cartographer::common::ToSeconds(node.time - cartographer::common::Time()),
+      T_local_tracking,
+      {{T_local_tracking.Inverse() * scan.T_local_sensor,
+        {scan.scan.returns, {}}}}};
+}
+
 HostConstraint ToHost(const Constraint& constraint,
                       const Eigen::Quaterniond& gravity_alignment) {
   // (submap <- tracking frame of the node)

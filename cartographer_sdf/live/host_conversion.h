@@ -19,6 +19,7 @@
 #include "cartographer/transform/rigid_transform.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
+#include "cartographer_sdf/grid/scan.h"
 #include "cartographer_sdf/grid/submap_id.h"
 #include "cartographer_sdf/localization/growing_grid.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
@@ -49,6 +50,14 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
     const cartographer::mapping::NodeId& id,
     const cartographer::mapping::TrajectoryNode::Data& node,
     const cartographer::sensor::RangeData& range_data, double distance_driven);
+
+// The echoes of the same scan, with the pose of the tracking frame by local
+// SLAM as odometry. Beams without an echo are left out: a lidar loses them at
+// glass and dark walls, too, and the weights of ScanLocalizationOptions are
+// learned on nodes, which do not have them.
+[[nodiscard]] OdometryScan MakeOdometryScan(
+    const cartographer::mapping::TrajectoryNode::Data& node,
+    const DrivenScan& scan);
 
 // Converts a constraint for AddSerializedConstraints: the host expects the pose
 // of the tracking frame, and removes the gravity alignment again.

@@ -77,6 +77,11 @@ void RegisterMetrics(metrics::FamilyFactory* const family_factory) {
       counter("cartographer_sdf_candidates", "Pairs proposed by queries");
   all.constraints =
       counter("cartographer_sdf_constraints", "Injected constraints");
+  all.looks = counter("cartographer_sdf_looks",
+                      "Scans that were compared with the whole loaded map");
+  all.dropped_scans =
+      counter("cartographer_sdf_dropped_scans",
+              "Scans that were not, because too many waited for it");
   const auto histogram = [&](const char* const name, const char* const what) {
     return family_factory
         ->NewHistogramFamily(

@@ -37,6 +37,8 @@ struct LiveMetrics {
   Counter* queries = Counter::Null();
   Counter* candidates = Counter::Null();
   Counter* constraints = Counter::Null();
+  Counter* looks = Counter::Null();
+  Counter* dropped_scans = Counter::Null();
   Histogram* describe_seconds = Histogram::Null();
   Histogram* query_seconds = Histogram::Null();
   OutcomeCounters<Verdict> matches;

@@ -19,6 +19,9 @@ inline void VisitOptions(OptionVisitor& visit,
   visit("max_translation_difference_meters",
         options.max_translation_difference_meters);
   visit("max_rotation_difference", options.max_rotation_difference);
+  visit("compare_scans", options.compare_scans);
+  visit("scan_localization", options.scan_localization);
+  visit("scan_session", options.scan_session);
 }
 
 inline void VisitOptions(OptionVisitor& visit, LiveOptions& options) {
@@ -68,7 +71,12 @@ std::string Validate(const LiveLocalizationOptions& options) {
     return "max_translation_difference_meters and max_rotation_difference must "
            "be positive";
   }
-  return Validate(options.localizer);
+  for (const std::string& error :
+       {Validate(options.localizer), Validate(options.scan_localization),
+        Validate(options.scan_session)}) {
+    if (!error.empty()) return error;
+  }
+  return "";
 }
 
 std::string Validate(const LiveOptions& options) {

@@ -15,6 +15,8 @@
 #include "cartographer_sdf/closing/consistency.h"
 #include "cartographer_sdf/closing/constraint_generation.h"
 #include "cartographer_sdf/localization/localizer.h"
+#include "cartographer_sdf/localization/scan_localizer.h"
+#include "cartographer_sdf/localization/scan_session.h"
 #include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/recognition/match.h"
@@ -51,6 +53,12 @@ struct LiveLocalizationOptions {
   // Poses nearer than this are the same pose [m], [rad].
   double max_translation_difference_meters = 0.5;
   double max_rotation_difference = 0.1;
+  // Whether each scan by itself is compared with the whole map, too: robots are
+  // found sooner, and noticed to be lost. Takes more CPU time, and up to 30 MB
+  // for a large map.
+  bool compare_scans = false;
+  ScanLocalizationOptions scan_localization;
+  ScanSessionOptions scan_session;
 };
 [[nodiscard]] std::string Validate(const LiveLocalizationOptions& options);
 

@@ -84,7 +84,8 @@ struct StartPose {
 };
 
 // Called on the worker thread, with no lock held, once when a search ends,
-// localised or not. Must not destroy the builder.
+// localised or not, and when a trajectory is lost, which begins a search. Must
+// not destroy the builder.
 using LocalizationCallback = std::function<void(const LocalizationResult&)>;
 
 struct ClosureRecord {
@@ -106,6 +107,9 @@ struct LiveSummary {
   int num_submaps = 0;  // described since the start
   int num_queries = 0;
   int num_candidates = 0;
+  int num_looks = 0;  // scans that were compared with the whole map
+  // Scans that were not, because too many waited.
+  int num_dropped_scans = 0;
   // Number of verified poses, by verdict ("accepted", "contradicted", ...).
   std::map<std::string, int> num_matches;
   int num_closures = 0;          // accepted

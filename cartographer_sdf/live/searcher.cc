@@ -50,7 +50,9 @@ Searcher::Searcher(const LiveOptions& options,
     : options_(options),
       pose_graph_(pose_graph),
       on_localization_(std::move(on_localization)),
-      search_(options) {}
+      search_(options),
+      scan_search_(options.localization.scan_localization,
+                   options.localization.scan_session) {}
 
 void Searcher::Announce() {
   const absl::MutexLock lock(&mutex_);
@@ -90,6 +92,9 @@ void Searcher::BeginSearch(const int trajectory_id,
   trajectory->is_searched = true;
   trajectory->is_restarted = true;
   trajectory->scans.clear();
+  trajectory->waiting_scans.clear();
+  trajectory->is_session_restarted = true;
+  trajectory->is_followed = false;
   trajectory->search_begin = trajectory->distance_driven;
   trajectory->next_query =
       trajectory->distance_driven + options_.localization.query_interval_meters;
@@ -127,7 +132,7 @@ void Searcher::OnLocalSlamResult(
   trajectory.T_local_tracking = T_local_tracking;
   trajectory.time = insertion->constant_data->time;
   FollowSubmaps(trajectory_id, *insertion, &trajectory);
-  if (trajectory.is_searched && has_map_) {
+  if (NeedsScans(trajectory)) {
     CollectScan(trajectory_id, range_data, *insertion, &trajectory);
   }
   const double seconds = SecondsSince(begin);
@@ -139,6 +144,14 @@ void Searcher::OnLocalSlamResult(
   summary_.callback_mean_seconds += seconds;  // the sum, until GetSummary
   summary_.callback_max_seconds =
       std::max(summary_.callback_max_seconds, seconds);
+}
+
+bool Searcher::NeedsScans(const Trajectory& trajectory) const {
+  if (!has_map_) return false;
+  const bool is_checked = options_.localization.compare_scans &&
+                          trajectory.localization &&
+                          trajectory.localization->localized;
+  return trajectory.is_searched || is_checked;
 }
 
 void Searcher::FollowSubmaps(const int trajectory_id,
@@ -191,10 +204,15 @@ void Searcher::CollectScan(const int trajectory_id,
                            const cartographer::sensor::RangeData& range_data,
                            const InsertionResult& insertion,
                            Trajectory* const trajectory) {
-  trajectory->scans.push_back(
-      {insertion.constant_data,
-       MakeDrivenScan(insertion.node_id, *insertion.constant_data, range_data,
-                      trajectory->distance_driven)});
+  DrivenScan scan = MakeDrivenScan(insertion.node_id, *insertion.constant_data,
+                                   range_data, trajectory->distance_driven);
+  if (options_.localization.compare_scans) {
+    QueueForSession(trajectory_id,
+                    MakeOdometryScan(*insertion.constant_data, scan),
+                    trajectory);
+  }
+  if (!trajectory->is_searched) return;
+  trajectory->scans.push_back({insertion.constant_data, std::move(scan)});
   if (trajectory->is_query_scheduled ||
       trajectory->distance_driven < trajectory->next_query) {
     return;
@@ -235,6 +253,8 @@ void Searcher::FinishTrajectory(const int trajectory_id,
   }
   trajectory.is_searched = false;
   trajectory.scans.clear();
+  trajectory.waiting_scans.clear();
+  worker_.Schedule([this, trajectory_id] { scan_search_.Stop(trajectory_id); });
 }
 
 void Searcher::ForgetTrajectory(const int trajectory_id) {
@@ -251,6 +271,8 @@ void Searcher::ForgetTrajectory(const int trajectory_id) {
   found->second.is_finished = true;
   found->second.is_searched = false;
   found->second.scans.clear();
+  found->second.waiting_scans.clear();
+  worker_.Schedule([this, trajectory_id] { scan_search_.Stop(trajectory_id); });
 }
 
 void Searcher::ForgetSubmap(const SubmapId& id) {

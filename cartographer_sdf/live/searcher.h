@@ -35,6 +35,7 @@
 #include "cartographer_sdf/live/injection_gate.h"
 #include "cartographer_sdf/live/live_options.h"
 #include "cartographer_sdf/live/map_builder.h"
+#include "cartographer_sdf/live/scan_search.h"
 #include "cartographer_sdf/live/worker.h"
 
 namespace cartographer_sdf {
@@ -137,6 +138,13 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     double next_query = 0.;           // distance driven
     std::vector<NodeWithScan> scans;  // not yet passed to the worker
     std::optional<LocalizationResult> localization;
+    // State of the session that compares each scan with the map.
+    std::deque<OdometryScan> waiting_scans;  // the newest
+    bool is_session_scheduled = false;
+    bool is_session_restarted = true;  // the worker must begin it anew
+    // Its pose is the one that was found: where scans contradict it, the
+    // trajectory is lost.
+    bool is_followed = false;
   };
   // A recorded closure; holds its constraints while they wait. All are kept, so
   // they are kept small: without the inliers and rivals of their match.
@@ -175,9 +183,15 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   void FollowSubmaps(int trajectory_id, const InsertionResult& insertion,
                      Trajectory* trajectory)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  // Whether its scans are used to find it, or to notice that it is lost.
+  [[nodiscard]] bool NeedsScans(const Trajectory& trajectory) const
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void CollectScan(int trajectory_id,
                    const cartographer::sensor::RangeData& range_data,
                    const InsertionResult& insertion, Trajectory* trajectory)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void QueueForSession(int trajectory_id, OdometryScan scan,
+                       Trajectory* trajectory)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void ScheduleDescription(const SubmapId& id)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -238,11 +252,42 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     bool is_restarted = false;
     double distance_driven = 0.;  // since the search began [m]
   };
-  ScansOfQuery TakeScans(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Of a trajectory that is not searched for, none.
+  std::optional<ScansOfQuery> TakeScans(int trajectory_id)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // Adds them to the growing submap; returns the newest node, null if it has
+  // none.
+  NodeData AddScans(int trajectory_id, ScansOfQuery scans)
+      ABSL_LOCKS_EXCLUDED(mutex_);
   // Stores the result; returns whether it completes the search.
   bool RecordQuery(const BackgroundSearch::Query& query, double cpu_seconds,
                    LocalizationResult* result) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Records the query; ends the search and reports where it succeeds.
+  void ConcludeQuery(const BackgroundSearch::Query& query, double cpu_seconds,
+                     LocalizationResult* result) ABSL_LOCKS_EXCLUDED(mutex_);
   void RefreshMapPoses() ABSL_LOCKS_EXCLUDED(mutex_);
+
+  // Tasks of the worker on sessions, and their parts (searcher_sessions.cc).
+  struct ScansOfSession {
+    std::deque<OdometryScan> scans;
+    bool is_restarted = false;
+  };
+  void DrawMap() ABSL_LOCKS_EXCLUDED(mutex_);
+  void ContinueSession(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
+  ScansOfSession TakeSessionScans(int trajectory_id)
+      ABSL_LOCKS_EXCLUDED(mutex_);
+  // What a located session means for its trajectory. (local <- robot of the
+  // answer)
+  void UseSession(int trajectory_id, const SessionAnswer& answer,
+                  const Rigid2& T_local_robot) ABSL_LOCKS_EXCLUDED(mutex_);
+  // If the trajectory is not searched for.
+  void FollowSession(const Rigid2& T_map_local, Trajectory* trajectory)
+      ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
+  void ConfirmSession(int trajectory_id, const SessionAnswer& answer,
+                      const Rigid2& T_local_robot) ABSL_LOCKS_EXCLUDED(mutex_);
+  // The same pose after the map has moved since it was drawn.
+  [[nodiscard]] Rigid2 MoveWithMap(const Rigid2& T_map_robot) const;
+  void LoseTrajectory(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
 
   const LiveOptions options_;
   cartographer::mapping::PoseGraph* const pose_graph_;
@@ -271,6 +316,8 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   std::map<SubmapId, OdometryPose> map_odometry_;
   std::optional<MapLayout> map_layout_;
   bool map_moves_ = false;  // not all of it is frozen
+  ScanSearch scan_search_;
+  std::map<SubmapId, Rigid2> T_map_submap_drawn_;
 
   Worker worker_;  // last, so that it ends first
 };

@@ -239,6 +239,9 @@ void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
     if (!status.ok()) LOG(WARNING) << status.message();
   }
   RememberLoaded(trajectory_ids, std::move(places));
+  if (options_.localization.enabled && options_.localization.compare_scans) {
+    DrawMap();
+  }
 }
 
 std::optional<bool> Searcher::DescribeMissing(
@@ -311,34 +314,42 @@ void Searcher::RefreshMapPoses() {
   }
 }
 
-Searcher::ScansOfQuery Searcher::TakeScans(const int trajectory_id) {
-  ScansOfQuery result;
+std::optional<Searcher::ScansOfQuery> Searcher::TakeScans(
+    const int trajectory_id) {
   const absl::MutexLock lock(&mutex_);
   Trajectory& trajectory = trajectories_.at(trajectory_id);
-  trajectory.is_query_scheduled = false;
-  if (is_shut_down_ || !trajectory.is_searched) return result;
+  if (is_shut_down_ || !trajectory.is_searched) return std::nullopt;
+  ScansOfQuery result;
   result.scans = std::move(trajectory.scans);
   trajectory.scans.clear();
-  if (result.scans.empty()) return result;
   result.is_restarted = trajectory.is_restarted;
   trajectory.is_restarted = false;
   result.distance_driven = trajectory.distance_driven - trajectory.search_begin;
   return result;
 }
 
+NodeData Searcher::AddScans(const int trajectory_id, ScansOfQuery scans) {
+  if (scans.is_restarted) search_.StartLocalizing(trajectory_id);
+  search_.AddScans(trajectory_id, std::move(scans.scans));
+  return search_.NewestNode(trajectory_id);
+}
+
 void Searcher::QueryLocalization(const int trajectory_id) {
-  ScansOfQuery taken = TakeScans(trajectory_id);
-  if (taken.scans.empty()) return;
+  {
+    const absl::MutexLock lock(&mutex_);
+    trajectories_.at(trajectory_id).is_query_scheduled = false;
+  }
+  std::optional<ScansOfQuery> taken = TakeScans(trajectory_id);
+  if (!taken) return;
   const double cpu_begin = ThreadCpuSeconds();
   const auto begin = std::chrono::steady_clock::now();
-  if (taken.is_restarted) search_.StartLocalizing(trajectory_id);
-  const NodeData newest = taken.scans.back().data;
-  search_.AddScans(trajectory_id, std::move(taken.scans));
-  RefreshMapPoses();
   LocalizationResult result;
   result.trajectory_id = trajectory_id;
+  result.distance_driven = taken->distance_driven;
+  const NodeData newest = AddScans(trajectory_id, *std::move(taken));
+  if (newest == nullptr) return;
   result.time = newest->time;
-  result.distance_driven = taken.distance_driven;
+  RefreshMapPoses();
   BackgroundSearch::Query query;
   if (map_odometry_.empty() || !map_layout_) {
     result.verdict = LocalizationVerdict::kNoMap;
@@ -348,14 +359,20 @@ void Searcher::QueryLocalization(const int trajectory_id) {
   }
   CountQuery(SecondsSince(begin), query.num_candidates);
   TheMetrics().localizations.Increment(result.verdict);
-  if (!RecordQuery(query, ThreadCpuSeconds() - cpu_begin, &result)) return;
-  search_.StopLocalizing(trajectory_id);
-  LOG(INFO) << "trajectory " << trajectory_id << " is localised in the map at "
-            << *result.T_map_tracking << " after " << result.distance_driven
-            << " m and " << result.num_queries << " queries, score "
-            << result.score << ", the next best pose "
-            << result.runner_up_score;
-  if (on_localization_) on_localization_(result);
+  ConcludeQuery(query, ThreadCpuSeconds() - cpu_begin, &result);
+}
+
+void Searcher::ConcludeQuery(const BackgroundSearch::Query& query,
+                             const double cpu_seconds,
+                             LocalizationResult* const result) {
+  if (!RecordQuery(query, cpu_seconds, result)) return;
+  search_.StopLocalizing(result->trajectory_id);
+  LOG(INFO) << "trajectory " << result->trajectory_id
+            << " is localised in the map at " << *result->T_map_tracking
+            << " after " << result->distance_driven << " m and "
+            << result->num_queries << " queries, score " << result->score
+            << ", the next best pose " << result->runner_up_score;
+  if (on_localization_) on_localization_(*result);
 }
 
 bool Searcher::RecordQuery(const BackgroundSearch::Query& query,

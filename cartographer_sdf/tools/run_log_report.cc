@@ -65,6 +65,8 @@ Json SummaryJson(const LiveSummary& summary) {
           {"submaps", summary.num_submaps},
           {"queries", summary.num_queries},
           {"candidates", summary.num_candidates},
+          {"looks", summary.num_looks},
+          {"dropped_scans", summary.num_dropped_scans},
           {"matches", summary.num_matches},
           {"closures", summary.num_closures},
           {"injected", summary.num_injected},

@@ -217,7 +217,8 @@ std::string DriveInARoom(const LiveOptions& options) {
     is_any_unsupported =
         is_any_unsupported || closure.status == ClosureStatus::kUnsupported;
   }
-  text << " unsupported " << is_any_unsupported;
+  text << " unsupported " << is_any_unsupported << " looks "
+       << summary.num_looks;
   return text.str();
 }
 
@@ -233,6 +234,12 @@ constexpr Situation kRoomWithoutSupport{&DriveInARoom, [] {
                                           options.consistency.min_support = 1e9;
                                           return options;
                                         }};
+constexpr Situation kRoomOfScans{&DriveInARoom, [] {
+                                   LiveOptions options =
+                                       testing::EagerOptions();
+                                   options.localization.compare_scans = true;
+                                   return options;
+                                 }};
 constexpr Situation kMatches{&Recognize, [] { return LiveOptions(); }};
 constexpr Situation kBestMatches{&Recognize, [] {
                                    LiveOptions options;
@@ -274,6 +281,9 @@ const std::vector<Probe>& Probes() {
       {"localization.min_num_queries", "4", &kQueries},
       {"localization.max_translation_difference_meters", "1e-9", &kQueries},
       {"localization.max_rotation_difference", "1e-9", &kQueries},
+      {"localization.compare_scans", "false", &kRoomOfScans},
+      {"localization.scan_localization.min_num_beams", "360", &kRoomOfScans},
+      {"localization.scan_session.look_rotation", "3.", &kRoomOfScans},
   };
   return *probes;
 }
@@ -283,7 +293,9 @@ const char* const kSharedTables[] = {"place.",
                                      "neighbourhood.",
                                      "consistency.",
                                      "constraints.",
-                                     "localization.localizer."};
+                                     "localization.localizer.",
+                                     "localization.scan_localization.",
+                                     "localization.scan_session."};
 
 // As a user would change it.
 LiveOptions Changed(const LiveOptions& options, const std::string& path,

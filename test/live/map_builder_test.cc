@@ -6,11 +6,13 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/synchronization/mutex.h"
+#include "absl/synchronization/notification.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "cartographer/mapping/pose_graph.h"
@@ -30,6 +32,7 @@ using testing::FeedOdometry;
 using testing::FeedScan;
 using ::testing::IsEmpty;
 using testing::kStep;
+using testing::kTimeStep;
 using testing::kWithoutOwnSearch;
 using testing::MakeStockOptions;
 using ::testing::Not;
@@ -38,6 +41,7 @@ using testing::Robot;
 using testing::SensorIds;
 using ::testing::SizeIs;
 using testing::TheDrivenOffice;
+using testing::TimeOf;
 
 // The host drops the first scan, which is its frame nevertheless, and some of
 // the others.
@@ -326,10 +330,138 @@ TEST_F(LocalizationTest, NextTrajectoryStartsWhereItWasFound) {
   map_builder->FinishTrajectory(next_id);
 }
 
+LiveOptions WithComparedScans() {
+  LiveOptions options;
+  options.localization.compare_scans = true;
+  return options;
+}
+
+// How far the robot drives until it is found [m], and where that is.
+TEST_F(LocalizationTest, ComparedScansFindItSooner) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
+  std::map<bool, double> sum_of_distances;
+  for (const bool is_frozen : {true, false}) {
+    for (const bool compares_scans : {false, true}) {
+      const auto map_builder = CreateMapBuilder(
+          mapping::CreateMapBuilder(stock.map_builder),
+          compares_scans ? WithComparedScans() : LiveOptions());
+      LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+      map_builder->LoadStateFromFile(MapPath(), is_frozen);
+      const int trajectory_id = map_builder->AddTrajectoryBuilder(
+          SensorIds(), stock.trajectory_builder, nullptr);
+      const std::vector<Rigid2> poses(all.begin() + NumMapped() / 3,
+                                      all.begin() + NumMapped() / 3 + 80);
+      live->WaitUntilIdle();
+      Robot(map_builder.get(), trajectory_id, 7).Drive(poses, [&] {
+        live->WaitUntilIdle();
+        return live->GetLocalization(trajectory_id)->localized;
+      });
+      const LocalizationResult result = *live->GetLocalization(trajectory_id);
+      ASSERT_TRUE(result.localized);
+      sum_of_distances[compares_scans] += result.distance_driven;
+      EXPECT_EQ(live->GetSummary().num_looks > 0, compares_scans);
+      EXPECT_EQ(live->GetSummary().num_dropped_scans, 0);
+      ExpectNear(*result.T_map_tracking,
+                 TrueMapPose(PoseAt(poses, result.time)), 0.3, 0.05);
+      EXPECT_GE(live->GetClosures().size(), 1u);
+      EXPECT_GE(live->GetClosures().back().num_constraints, 3);
+      map_builder->FinishTrajectory(trajectory_id);
+      map_builder->pose_graph()->RunFinalOptimization();
+      EXPECT_GE(live->GetSummary().num_injected, 1);
+      ExpectNear(FromHost(map_builder->pose_graph()->GetLocalToGlobalTransform(
+                     trajectory_id)),
+                 TrueMapPose(poses.front()), 0.3, 0.05);
+    }
+  }
+  EXPECT_LT(sum_of_distances[true], sum_of_distances[false] - 1.);
+  EXPECT_LT(sum_of_distances[true], 4.);
+}
+
+// Carried to another room between two scans, while the wheels say nothing of
+// it.
+TEST_F(LocalizationTest, ComparedScansNoticeThatItIsLost) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  absl::Mutex mutex;
+  std::vector<LocalizationResult> results;
+  const auto map_builder =
+      CreateMapBuilder(mapping::CreateMapBuilder(stock.map_builder),
+                       WithComparedScans(), [&](const LocalizationResult& one) {
+                         const absl::MutexLock lock(&mutex);
+                         results.push_back(one);
+                       });
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  map_builder->LoadStateFromFile(MapPath(), true);
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  live->WaitUntilIdle();
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
+  const size_t num_mapped = static_cast<size_t>(NumMapped());
+  LidarOptions lidar;
+  lidar.num_beams = 240;
+  RandomNumbers random(3);
+  constexpr size_t kNumBefore = 30, kNumAfter = 20;
+  for (size_t k = 0; k < kNumBefore + kNumAfter; ++k) {
+    const size_t odometry = num_mapped / 3 + k;
+    const size_t seen = k < kNumBefore ? odometry : k - kNumBefore;
+    const double seconds = kTimeStep * static_cast<double>(k + 1);
+    FeedOdometry(map_builder.get(), trajectory_id, seconds,
+                 all[num_mapped / 3].Inverse() * all[odometry]);
+    FeedScan(map_builder.get(), trajectory_id, seconds,
+             TakeScan(TheDrivenOffice().plan, {}, all[seen], lidar, &random));
+    live->WaitUntilIdle();
+    const absl::MutexLock lock(&mutex);
+    EXPECT_LE(results.size(), k < kNumBefore ? 1u : 3u);
+  }
+  const absl::MutexLock lock(&mutex);
+  ASSERT_GE(results.size(), 2u);
+  EXPECT_TRUE(results[0].localized);
+  EXPECT_FALSE(results[1].localized);
+  EXPECT_TRUE(results[1].was_localized);
+  EXPECT_EQ(results[1].verdict, LocalizationVerdict::kContradicted);
+  EXPECT_GT(results[1].time, TimeOf(kTimeStep * kNumBefore));
+  // Constraints of one place would pull against those of the other.
+  const int num_constraints = live->GetSummary().num_constraints;
+  map_builder->FinishTrajectory(trajectory_id);
+  EXPECT_EQ(live->GetSummary().num_constraints, num_constraints);
+}
+
+TEST_F(LocalizationTest, DropsScansWhileTheWorkerIsBusy) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  absl::Notification may_go_on;
+  const auto map_builder = CreateMapBuilder(
+      mapping::CreateMapBuilder(stock.map_builder), WithComparedScans(),
+      [&](const LocalizationResult&) { may_go_on.WaitForNotification(); });
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  map_builder->LoadStateFromFile(MapPath(), true);
+  live->WaitUntilIdle();
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  const std::vector<Rigid2>& all = TheDrivenOffice().poses;
+  // The worker holds on as soon as the robot is found, and says so.
+  Robot robot(map_builder.get(), trajectory_id, 7);
+  size_t num_driven = 0, num_after = 0;
+  robot.Drive({all.begin() + NumMapped() / 3, all.end()}, [&] {
+    ++num_driven;
+    while (!live->GetLocalization(trajectory_id)->localized &&
+           live->GetSummary().num_waiting_tasks > 0) {
+      absl::SleepFor(absl::Milliseconds(1));
+    }
+    if (live->GetLocalization(trajectory_id)->localized) ++num_after;
+    return num_after >= 60;
+  });
+  EXPECT_GE(live->GetSummary().num_dropped_scans, 20);
+  may_go_on.Notify();
+  live->WaitUntilIdle();
+  EXPECT_LT(live->GetSummary().num_dropped_scans,
+            static_cast<int>(num_driven) - 20);
+  map_builder->FinishTrajectory(trajectory_id);
+}
+
 TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
   const auto stock = MakeStockOptions(kWithoutOwnSearch);
   const auto map_builder = CreateMapBuilder(
-      mapping::CreateMapBuilder(stock.map_builder), LiveOptions());
+      mapping::CreateMapBuilder(stock.map_builder), WithComparedScans());
   LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder, nullptr);
@@ -357,6 +489,7 @@ TEST_F(LocalizationTest, SaysThatItIsNotInTheMap) {
   const LocalizationResult result = *live->GetLocalization(trajectory_id);
   EXPECT_FALSE(result.localized);
   EXPECT_GE(result.num_queries, 3);
+  EXPECT_GT(live->GetSummary().num_looks, 3);
   EXPECT_NE(result.verdict, LocalizationVerdict::kTooLittleSeen);
   map_builder->FinishTrajectory(trajectory_id);
   EXPECT_EQ(live->GetLocalization(trajectory_id)->verdict,
