@@ -19,13 +19,7 @@ constexpr double kCrossingTolerance = 0.3;
 // lidar, and cells of the map.
 constexpr double kEchoSigma = 0.07;
 
-enum class BeamFate {
-  kAtWall,
-  kThroughWall,
-  kInFreeSpace,
-  kInUnknown,
-  kSilent
-};
+enum class BeamFate { kAtWall, kThroughWall, kInFreeSpace, kInUnknown };
 
 struct JudgedBeam {
   BeamFate fate;
@@ -41,7 +35,7 @@ bool IsObserved(const RayMap& map, const Eigen::Vector2d& p_grid) {
 }
 
 JudgedBeam JudgeBeam(const RayMap& map, const Eigen::Vector2d& origin_grid,
-                     const Eigen::Vector2d& end_grid, const bool has_echo) {
+                     const Eigen::Vector2d& end_grid) {
   const double resolution = map.geometry().resolution;
   const Eigen::Vector2d offset = end_grid - origin_grid;
   const double range = offset.norm();
@@ -49,7 +43,6 @@ JudgedBeam JudgeBeam(const RayMap& map, const Eigen::Vector2d& origin_grid,
                           std::max(0., range - kCrossingTolerance) / resolution,
                           /*stops_at_grazed=*/false);
   if (ray.end == RayEnd::kWall) return {BeamFate::kThroughWall};
-  if (!has_echo) return {BeamFate::kSilent};
   const std::optional<FieldSample> sample = SampleField(map.field, end_grid);
   const double distance = sample ? std::abs(sample->distance) : 1e3;
   if (distance < kWallTolerance) return {BeamFate::kAtWall, distance};
@@ -66,9 +59,10 @@ BeamEvidence MeasureBeams(const RayMap& map, const Sweep& sweep,
   BeamEvidence evidence;
   double sum_of_squares = 0.;
   for (const RobotBeam& beam : sweep.beams) {
-    const JudgedBeam judged = JudgeBeam(map, T_grid_robot * beam.origin,
-                                        T_grid_robot * beam.end, beam.has_echo);
-    if (judged.fate == BeamFate::kSilent) continue;
+    // It may have met glass or a dark wall.
+    if (!beam.has_echo) continue;
+    const JudgedBeam judged =
+        JudgeBeam(map, T_grid_robot * beam.origin, T_grid_robot * beam.end);
     ++evidence.num_beams;
     evidence.at_wall += judged.fate == BeamFate::kAtWall;
     evidence.through_wall += judged.fate == BeamFate::kThroughWall;

@@ -28,9 +28,6 @@ constexpr size_t kNumKeptPerPose = 10;
 struct SearchBeam {
   int direction;
   uint8_t range;
-  // Ranges of the map beyond it count as this: what a beam without an echo
-  // would not have seen.
-  uint8_t limit;
 };
 
 struct PoseCost {
@@ -63,9 +60,11 @@ std::vector<SearchBeam> SearchBeams(const Sweep& sweep) {
     const int direction = k * kStride % kNumDirections;
     if (beam_of[direction] < 0) continue;
     const RobotBeam& beam = sweep.beams[beam_of[direction]];
+    // It may have met glass or a dark wall.
+    if (!beam.has_echo) continue;
     const uint8_t range = static_cast<uint8_t>(std::min(
         255., std::round((beam.end - sweep.centre).norm() / kPanoramaUnit)));
-    beams.push_back({direction, range, beam.has_echo ? uint8_t{255} : range});
+    beams.push_back({direction, range});
   }
   return beams;
 }
@@ -79,9 +78,9 @@ __attribute__((noinline)) void AddBeam(const SearchBeam& beam,
                                        uint8_t* __restrict const sums) {
   const uint8_t* __restrict const range = ranges + beam.direction;
   const uint8_t* __restrict const mask = masks + beam.direction;
-  const uint8_t seen = beam.range, limit = beam.limit;
+  const uint8_t seen = beam.range;
   for (int turn = 0; turn < kNumDirections; ++turn) {
-    const uint8_t expected = std::min(range[turn], limit);
+    const uint8_t expected = range[turn];
     const uint8_t difference = static_cast<uint8_t>(std::max(expected, seen) -
                                                     std::min(expected, seen));
     const uint8_t cost =

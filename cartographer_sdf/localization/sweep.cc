@@ -41,6 +41,7 @@ class SweepDirections {
     const double at = (turns - std::floor(turns)) * size;
     SweepDirection& direction =
         directions_[std::min(static_cast<size_t>(at), directions_.size() - 1)];
+    if (!has_echo && direction.beam && direction.beam->has_echo) return;
     const double distance = std::abs(at - std::floor(at) - 0.5);
     if (distance >= direction.offset) return;
     direction = {RobotBeam{T_robot_sensor.translation(), end, has_echo},
@@ -92,6 +93,8 @@ Sweep MakeSweep(const std::vector<RobotScan>& scans, const int num_directions,
     for (const Eigen::Vector2f& point : scan.scan.returns) {
       directions.Add(scan.T_robot_sensor, point, /*has_echo=*/true);
     }
+  }
+  for (const RobotScan& scan : scans) {
     for (const Eigen::Vector2f& point : scan.scan.misses) {
       directions.Add(scan.T_robot_sensor, point, /*has_echo=*/false);
     }

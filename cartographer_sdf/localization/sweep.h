@@ -34,8 +34,8 @@ struct Sweep {
 };
 
 // Of points in one direction the nearest to the middle of the direction is
-// kept. Skips points that are not finite, nearer than 5 cm, or farther than
-// `max_range` from the sensor.
+// kept, of echoes if there are any. Skips points that are not finite, nearer
+// than 5 cm, or farther than `max_range` from the sensor.
 [[nodiscard]] Sweep MakeSweep(const std::vector<RobotScan>& scans,
                               int num_directions, double max_range);
 

@@ -52,6 +52,25 @@ TEST_F(PanoramaSearchTest, SensorsBesideTheCentreOfTheRobotAreNoMatter) {
   EXPECT_LT(std::abs(NormalizeAngle(best.rotation() - truth.rotation())), 0.1);
 }
 
+// They may have met glass.
+TEST_F(PanoramaSearchTest, BeamsWithoutEchoSayNothing) {
+  const RobotScan scan =
+      testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3));
+  RobotScan with_silent = scan;
+  for (int k = 0; k < 1000; ++k) {
+    const float angle = 0.00628f * static_cast<float>(k);
+    with_silent.scan.misses.emplace_back(50.f * std::cos(angle),
+                                         50.f * std::sin(angle));
+  }
+  const std::vector<Rigid2> poses = Search(scan, 10),
+                            same_poses = Search(with_silent, 10);
+  ASSERT_EQ(same_poses.size(), poses.size());
+  for (size_t k = 0; k < poses.size(); ++k) {
+    EXPECT_EQ(same_poses[k].translation(), poses[k].translation());
+    EXPECT_EQ(same_poses[k].rotation(), poses[k].rotation());
+  }
+}
+
 TEST_F(PanoramaSearchTest, FewerPosesAreTheFirstOfMore) {
   const RobotScan scan =
       testing::ScanFrom(testing::TwoRooms(), Rigid2(2., 1.7, 0.3));

@@ -85,15 +85,21 @@ TEST_F(SweepRegistrationTest, OutsideTheMapNothingIsKnown) {
   EXPECT_EQ(evidence.fit, 0.);
 }
 
-TEST_F(SweepRegistrationTest, ABeamWithoutEchoOnlyMustNotCrossWalls) {
-  Sweep sweep;
-  sweep.beams = {{{0., 0.}, {8., 0.}, false}};
-  // Up the wall at 5 m from the west room, and along the corridor.
-  EXPECT_EQ(MeasureBeams(map_, sweep, InGrid(Rigid2(3., 2., 0.5 * M_PI)))
-                .through_wall,
-            1.);
-  EXPECT_EQ(MeasureBeams(map_, sweep, InGrid(Rigid2(1., 6.1, 0.))).num_beams,
-            0);
+// It may have met glass: nothing tells that from free space.
+TEST_F(SweepRegistrationTest, BeamsWithoutEchoSayNothing) {
+  const Rigid2 T_grid_robot = InGrid(Rigid2(3., 2., 0.));
+  const BeamEvidence evidence = MeasureBeams(map_, sweep_, T_grid_robot);
+  Sweep sweep = sweep_;
+  // Through the walls all around.
+  for (int k = 0; k < 100; ++k) {
+    const Eigen::Rotation2Dd turn(0.06 * k);
+    sweep.beams.push_back(
+        {sweep.centre, sweep.centre + turn * Eigen::Vector2d(30., 0.), false});
+  }
+  const BeamEvidence with_silent = MeasureBeams(map_, sweep, T_grid_robot);
+  EXPECT_EQ(with_silent.num_beams, evidence.num_beams);
+  EXPECT_EQ(with_silent.through_wall, evidence.through_wall);
+  EXPECT_EQ(with_silent.fit, evidence.fit);
 }
 
 }  // namespace
