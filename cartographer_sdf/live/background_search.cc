@@ -254,14 +254,15 @@ std::vector<Match> BackgroundSearch::MatchAt(
   const Eigen::Vector2d& p_query = T_query_tracking.translation();
   for (const SubmapId& id : NearestSubmaps(map, T_map_query * p_query)) {
     const Place& reference = places().at(id);
-    const Rigid2 claimed = map.T_map_submap.at(id).Inverse() * T_map_query;
+    const Rigid2 T_reference_query =
+        map.T_map_submap.at(id).Inverse() * T_map_query;
     std::optional<VerifiedPose> verified =
         VerifyClaim(options_.match.verification, reference.surface,
-                    query.surface, claimed, {});
+                    query.surface, T_reference_query, {});
     // A few scans show too little for a match to be accepted by itself.
     if (!verified || verified->verdict == Verdict::kContradicted ||
         verified->verdict == Verdict::kTooLittleOverlap ||
-        !AreNear(verified->T_reference_query, claimed, p_query,
+        !AreNear(verified->T_reference_query, T_reference_query, p_query,
                  {options_.localization.max_translation_difference_meters,
                   options_.localization.max_rotation_difference})) {
       continue;

@@ -83,8 +83,7 @@ OdometryScan MakeOdometryScan(const mapping::TrajectoryNode::Data& node,
   return OdometryScan{
       cartographer::common::ToSeconds(node.time - cartographer::common::Time()),
       T_local_tracking,
-      {{T_local_tracking.Inverse() * scan.T_local_sensor,
-        {scan.scan.returns, {}}}}};
+      {{T_local_tracking.Inverse() * scan.T_local_sensor, scan.scan}}};
 }
 
 HostConstraint ToHost(const Constraint& constraint,

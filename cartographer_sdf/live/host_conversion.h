@@ -51,10 +51,7 @@ using HostConstraint = cartographer::mapping::PoseGraphInterface::Constraint;
     const cartographer::mapping::TrajectoryNode::Data& node,
     const cartographer::sensor::RangeData& range_data, double distance_driven);
 
-// The echoes of the same scan, with the pose of the tracking frame by local
-// SLAM as odometry. Beams without an echo are left out: a lidar loses them at
-// glass and dark walls, too, and the weights of ScanLocalizationOptions are
-// learned on nodes, which do not have them.
+// The same scan, with the pose of the tracking frame by local SLAM as odometry.
 [[nodiscard]] OdometryScan MakeOdometryScan(
     const cartographer::mapping::TrajectoryNode::Data& node,
     const DrivenScan& scan);

@@ -601,7 +601,8 @@ class Scan:
     def __init__(self, returns: ArrayLike, misses: ArrayLike = ...,
                  T_robot_sensor: Pose = ...) -> None:
         """`returns`: N x 2 points hit, in the sensor frame [m]; `misses`: end points
-        of beams without an echo, at the range of the sensor."""
+        of beams without an echo, at the range of the sensor, which say nothing of
+        where the robot is."""
     @property
     def returns(self) -> NDArray[np.float32]: ...
     @property
