@@ -11,6 +11,12 @@ through cartographer_sdf_node without Cartographer's own loop search.
 localization drives 40 s of willow_2 from evenly spaced starts (20) in the frozen
 map of willow_1. Both append a row for each run to RESULT.json and print it.
 
+Times of mapping are seconds since the bag begins to play. The node runs on after
+the last scan until it is idle: last_match is when it logged the last match that
+holds (stock: of a node with a submap; the searcher: of two submaps), last_growth
+when the inter-submap constraints on /constraint_list, running_constraints in the
+end, were last seen to be more than at the end of the bag; null if they were not.
+
 Needs what scripts/test_ros.sh needs, in an environment of a workspace with
 cartographer_sdf_ros and with a network of its own (unshare -n, ip link set lo
 up); BUILD_DIR, DATA_DIR and WORK_DIR as of measure_live.py, and RATE, in seconds of the
@@ -20,7 +26,9 @@ recording per second (10 for mapping, 4 for localization).
 import json
 import os
 import pathlib
+import re
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -38,6 +46,11 @@ from ros_drive_test import call, is_saved, num_inter_constraints, play, run, wai
 HERE = pathlib.Path(__file__).resolve().parent
 ROS_PREFIX = os.environ["CARTOGRAPHER_ROS_PREFIX"] + "/lib/"
 SECONDS = 40.
+# A node is idle if it takes less than this share of a core for so many looks of a second.
+IDLE_SHARE, IDLE_LOOKS, LONGEST_WORK = 0.1, 4, 600.
+# A line of the log of a node with its time [s since 1970].
+MATCH = re.compile(r"\[(\d+\.\d+)[^]]*\]: .*\] "
+                   r"(?:Node \(.* differs by |closure of submap .*: ready)")
 MAPPING = {
     "stock": ("cartographer_ros", "cartographer_node", "robot_mapping.lua"),
     "searcher": ("cartographer_sdf_ros", "cartographer_sdf_node",
@@ -62,6 +75,11 @@ class Node:
                  "-configuration_basename", basename, *flags], env=environment,
                 stdout=log, stderr=subprocess.STDOUT)
 
+    def cpu_seconds(self):
+        status = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text()
+        ticks = status.rsplit(")", 1)[1].split()[11:13]
+        return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
+
     def end(self):
         """Ends it as rosnode does; returns its CPU time [s]."""
         subprocess.run(["rosnode", "kill", "/cartographer_node"], check=False,
@@ -71,6 +89,55 @@ class Node:
         return usage.ru_utime + usage.ru_stime
 
 
+def count_inter_constraints(data):
+    """Of an encoded visualization_msgs/MarkerArray of /constraint_list: decoding all of its
+    points would keep a core busy."""
+    def skip(position, *sizes):
+        """Past lists and texts with entries of these sizes."""
+        for size in sizes:
+            position += 4 + size * struct.unpack_from("<I", data, position)[0]
+        return position
+
+    count, position = 0, 4
+    for _ in range(struct.unpack_from("<I", data)[0]):
+        begin = skip(position + 12, 1)  # a sequence number, a stamp and the frame
+        position = skip(begin, 1)
+        name = data[begin + 4:position]
+        position += 12 + 56 + 24 + 16 + 8 + 1  # from id to frame_locked
+        if name.startswith(b"Inter constraints"):
+            count += struct.unpack_from("<I", data, position)[0] // 2
+        position = skip(position, 24, 16, 1, 1) + 1  # points, colors, text, mesh
+    return count
+
+
+def watch_until_idle(node, begin):
+    """Of a node whose bag has ended; see above."""
+    def count():
+        return count_inter_constraints(
+            rospy.wait_for_message("/constraint_list", rospy.AnyMsg, 60)._buff)
+
+    seen, last_growth, looks, idle_from = count(), None, 0, None
+    end = time.time() + LONGEST_WORK
+    while looks < IDLE_LOOKS and time.time() < end:
+        look_from, before = time.time() - begin, node.cpu_seconds()
+        time.sleep(1.)
+        is_busy = node.cpu_seconds() - before > IDLE_SHARE
+        now = count()
+        if now > seen:
+            seen, last_growth, is_busy = now, time.time() - begin, True
+        if looks == 0:
+            idle_from = look_from
+        looks = 0 if is_busy else looks + 1
+    return {"last_growth": last_growth, "running_constraints": seen,
+            "idle_from": idle_from if looks == IDLE_LOOKS else None}
+
+
+def last_match(log, begin):
+    """None if nothing was matched."""
+    found = [float(match[1]) for match in MATCH.finditer(log.read_text(errors="replace"))]
+    return max(found) - begin if found else None
+
+
 def measure_mapping(name, variant):
     with tempfile.TemporaryDirectory(dir=os.environ.get("WORK_DIR")) as directory:
         work = pathlib.Path(directory)
@@ -78,16 +145,21 @@ def measure_mapping(name, variant):
             work / "drive.bag")
         path = work / "map.pbstream"
         node = Node(*MAPPING[variant], work, f"-save_state_filename={path}")
-        begin = time.monotonic()
+        begin = time.time()
         play(work / "drive.bag", os.environ.get("RATE", "10"))
-        played = time.monotonic() - begin
+        row = {"kind": "mapping", "name": name, "variant": variant,
+               "played": time.time() - begin}
         call("/finish_trajectory", FinishTrajectory, 0)
-        cpu = node.end()
+        row.update(watch_until_idle(node, begin))
+        end = time.time()
+        row["cpu_seconds"] = node.end()
+        row["seconds_to_end"] = time.time() - end
         wait_until(lambda: is_saved(path), 10)
-        return {"kind": "mapping", "name": name, "variant": variant, "cpu_seconds": cpu,
-                "played_seconds": played, "all_seconds": time.monotonic() - begin,
-                "inter_constraints": num_inter_constraints(live.BUILD / "cartographer_sdf", path),
-                "errors": live.evaluate(work, name)}
+        row.update(
+            last_match=last_match(work / "node.log", begin),
+            inter_constraints=num_inter_constraints(live.BUILD / "cartographer_sdf", path),
+            errors=live.evaluate(work, name))
+        return row
 
 
 class Poses:
