@@ -7,10 +7,12 @@ usage: ros_drive_test.py LOG PROGRAM DIRECTORY
 
 Run by scripts/test_ros.sh, which sets up the environment. LOG is a CARMEN log of
 at least 400 s, PROGRAM the built cartographer_sdf; bags, maps and logs of the
-nodes go to DIRECTORY.
+nodes go to DIRECTORY. With ROS_TEST_RECORD, what the layouts show while the robot
+is localised goes to a bag of that name, for scripts/draw_foxglove_layout.py.
 """
 
 import contextlib
+import json
 import math
 import os
 import pathlib
@@ -19,6 +21,7 @@ import subprocess
 import sys
 import time
 
+import draw_foxglove_layout
 import rosgraph
 import rospy
 from cartographer_ros_msgs.srv import (FinishTrajectory, GetTrajectoryStates, ReadMetrics,
@@ -41,6 +44,7 @@ MIN_INTER_CONSTRAINTS = 50
 MAX_ERROR = 0.5  # [m]
 MAX_ROTATION = 0.1  # [rad]
 NODE = "/cartographer_node"
+FOXGLOVE_LAYOUT = HERE.parent / "ros/cartographer_sdf_ros/foxglove/searcher.json"
 ACTIVE, FROZEN, DELETED = 0, 2, 3
 
 
@@ -82,6 +86,20 @@ def launched(directory, name, **arguments):
         finally:
             process.send_signal(signal.SIGINT)
             process.wait()
+
+
+@contextlib.contextmanager
+def recorded(bag, topics):
+    """Records topics into a bag, or nothing without a bag."""
+    if not bag:
+        yield
+        return
+    with subprocess.Popen(["rosbag", "record", "--quiet", "--lz4", "-O", bag, *topics],
+                          stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
+        try:
+            yield
+        finally:
+            process.send_signal(signal.SIGINT)
 
 
 def play(bag, rate, *options):
@@ -220,8 +238,12 @@ def check_covariance(pose, error):
 def localize(directory, path, bag):
     second_offset = FIRST_BEGIN + LENGTH + PAUSE - SECOND_BEGIN
     clock = rospy.Publisher("/clock", Clock, queue_size=10)
-    with launched(directory, "localization", map=path):
+    shown = draw_foxglove_layout.topics_of(json.loads(FOXGLOVE_LAYOUT.read_text()))
+    with launched(directory, "localization", map=path), recorded(
+            os.environ.get("ROS_TEST_RECORD"), [*shown, "/tf", "/tf_static"]):
         call("/sdf_locate", Locate, LocateRequest(trajectory_id=-1))
+        check(wait_until(lambda: shown <= {name for name, _ in rospy.get_published_topics()}, 30),
+              f"all that the layout for Foxglove shows is published: {sorted(shown)}")
         listener = Listener()
         truth = Truth(call("/trajectory_query", TrajectoryQuery, 0).trajectory)
         play(bag, LOCALIZATION_RATE, "-u", LENGTH)

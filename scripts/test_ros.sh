@@ -19,6 +19,8 @@ environment:
                            ~/cartographer_ros_ws/install_isolated by default
   ROS_TEST_LOG             the recording to drive; willow_1.log.gz of the data
                            that are not part of the project by default
+  ROS_TEST_RECORD          a bag to record what the layouts show into, for
+                           scripts/draw_foxglove_layout.py; none by default
 END
 }
 
@@ -31,6 +33,10 @@ esac
 SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
 export CARTOGRAPHER_ROS_PREFIX="${CARTOGRAPHER_ROS_PREFIX:-${HOME}/cartographer_ros_ws/install_isolated}"
+if [[ -n "${ROS_TEST_RECORD:-}" ]]; then
+  ROS_TEST_RECORD="$(realpath -m "${ROS_TEST_RECORD}")"
+  export ROS_TEST_RECORD
+fi
 LOG="${ROS_TEST_LOG:-${SOURCE_DIR}/../shared/data/willow_1.log.gz}"
 
 skip() {
