@@ -37,6 +37,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 # [s] of the recording per second.
 RATE = 20
 LOCALIZATION_RATE = 10
+# Of messages that a node has not taken yet. rosbag drops more than 100 of a topic, which is
+# an eighth of a second of odometry, and a loaded computer then maps something else.
+QUEUE_SIZE = 100000
 # Pieces of the log, from one of which the robot is carried to the other [s]. Not
 # around 119 s, where local SLAM slips by 0.8 m if it begins at 60 s.
 FIRST_BEGIN, SECOND_BEGIN, LENGTH, PAUSE = 200., 420., 60., 1.
@@ -104,8 +107,8 @@ def recorded(bag, topics):
 
 def play(bag, rate, *options):
     """Plays a bag for those that listen to all of its topics."""
-    run("rosbag", "play", "--clock", "--quiet", "--wait-for-subscribers", "-r", rate, *options,
-        bag)
+    run("rosbag", "play", "--clock", "--quiet", "--wait-for-subscribers",
+        f"--queue={QUEUE_SIZE}", "-r", rate, *options, bag)
 
 
 def call(name, kind, *arguments):
