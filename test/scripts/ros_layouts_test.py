@@ -106,12 +106,24 @@ class FoxgloveLayoutTest(unittest.TestCase):
 
 class RvizLayoutTest(unittest.TestCase):
 
-    def test_shows_what_foxglove_shows(self):
-        text = (ROS / "rviz" / "searcher.rviz").read_text()
-        displays = text[:text.index("Global Options:")]
+    def setUp(self):
         foxglove = json.loads((ROS / "foxglove" / "searcher.json").read_text())
-        shown = set(re.findall(r"(?:Marker )?Topic: (/\w+)", displays))
-        self.assertEqual(shown, set(foxglove["configById"]["3D!map"]["topics"]))
+        self.shown = set(foxglove["configById"]["3D!map"]["topics"])
+
+    def displays(self, name):
+        text = (ROS / "rviz" / name).read_text()
+        return text[:text.index("Global Options:")]
+
+    def test_shows_what_foxglove_shows(self):
+        self.assertEqual(set(re.findall(r"(?:Marker )?Topic: (/\w+)",
+                                        self.displays("searcher.rviz"))), self.shown)
+        self.assertEqual(set(re.findall(r"Value: (/\w+)",
+                                        self.displays("searcher_ros2.rviz"))), self.shown)
+
+    def test_gets_what_was_published_before_in_ros_2(self):
+        latched = re.findall(r"Durability Policy: Transient Local\n.*\n.*\n *Value: (/\w+)",
+                             self.displays("searcher_ros2.rviz"))
+        self.assertEqual(set(latched), {"/map", "/sdf_matches", "/sdf_pose"})
 
 
 class DrawingTest(unittest.TestCase):

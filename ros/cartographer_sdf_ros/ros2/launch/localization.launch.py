@@ -7,12 +7,13 @@ import os
 from ament_index_python.packages import get_package_share_directory
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
-CONFIGURATION_DIRECTORY = os.path.join(
-    get_package_share_directory('cartographer_sdf_ros'), 'configuration_files')
+SHARE_DIRECTORY = get_package_share_directory('cartographer_sdf_ros')
+CONFIGURATION_DIRECTORY = os.path.join(SHARE_DIRECTORY, 'configuration_files')
 ARGUMENTS = [
     DeclareLaunchArgument('configuration_directory', default_value=CONFIGURATION_DIRECTORY),
     DeclareLaunchArgument('configuration_basename', default_value='robot_localization.lua'),
@@ -22,6 +23,7 @@ ARGUMENTS = [
     DeclareLaunchArgument('imu', default_value='imu'),
     DeclareLaunchArgument('use_sim_time', default_value='false'),
     DeclareLaunchArgument('collect_metrics', default_value='false'),
+    DeclareLaunchArgument('rviz', default_value='false'),
     DeclareLaunchArgument('pose_topic', default_value='sdf_pose'),
     DeclareLaunchArgument('matches_topic', default_value='sdf_matches'),
     DeclareLaunchArgument('diagnostics_topic', default_value='/diagnostics'),
@@ -44,7 +46,7 @@ PARAMETERS = [
 
 
 def generate_launch_description():
-    """The node, and cartographer_ros's that publishes the map."""
+    """The node, cartographer_ros's that publishes the map, and RViz on request."""
     cartographer = Node(
         package='cartographer_sdf_ros',
         executable='cartographer_sdf_node',
@@ -76,4 +78,10 @@ def generate_launch_description():
         name='cartographer_occupancy_grid_node',
         parameters=[{'use_sim_time': LaunchConfiguration('use_sim_time')}],
         arguments=['-resolution', '0.05'])
-    return LaunchDescription([*ARGUMENTS, cartographer, grid])
+    rviz = Node(
+        package='rviz2',
+        executable='rviz2',
+        name='rviz',
+        arguments=['-d', os.path.join(SHARE_DIRECTORY, 'rviz', 'searcher_ros2.rviz')],
+        condition=IfCondition(LaunchConfiguration('rviz')))
+    return LaunchDescription([*ARGUMENTS, cartographer, grid, rviz])
