@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 
 # Builds the packages in ros/ with colcon in a sourced workspace of ROS 2 that has
-# cartographer_ros, starts the node, and lets it save its map. No robot drives.
+# cartographer_ros, starts the node, and lets it save its map. With a recording,
+# maps it, localises in the map, and finds a robot again that was carried away.
 # Does nothing where one of these is absent, and says so.
 
 set -euo pipefail
@@ -12,8 +13,10 @@ usage() {
   cat <<END
 usage: scripts/test_ros2.sh
 environment:
-  BUILD_DIR  the build directory of this project, which must be built; build/ of
-             the checkout by default
+  BUILD_DIR     the build directory of this project, which must be built; build/
+                of the checkout by default
+  ROS_TEST_LOG  the recording to drive; willow_1.log.gz of the data that are not
+                part of the project by default, nothing where it is absent
 and that of ROS 2 (source .../setup.bash)
 END
 }
@@ -26,7 +29,9 @@ esac
 
 SOURCE_DIR="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 BUILD_DIR="${BUILD_DIR:-${SOURCE_DIR}/build}"
+LOG="${ROS_TEST_LOG:-${SOURCE_DIR}/../shared/data/willow_1.log.gz}"
 START_SECONDS=60
+MIN_INTER_CONSTRAINTS=50
 
 skip() {
   echo "test_ros2.sh: skipped: $*"
@@ -62,6 +67,7 @@ build() {
   cmake --install "${BUILD_DIR}" --prefix "${WORK}/prefix" >/dev/null
   mkdir -p "${WORK}/workspace/src"
   ln -s "${SOURCE_DIR}/ros" "${WORK}/workspace/src/ros"
+  ln -s "${SOURCE_DIR}/test/ros2" "${WORK}/workspace/src/test"
   local cartographer
   cartographer="$(sed -n 's/^cartographer_DIR:PATH=//p' "${BUILD_DIR}/CMakeCache.txt")"
   (cd "${WORK}/workspace" &&
@@ -99,14 +105,45 @@ set +u
 # shellcheck disable=SC1091
 source "${WORK}/workspace/install/local_setup.bash"
 set -u
-"${PREFIX}/lib/cartographer_sdf_ros/cartographer_sdf_node" \
-  -configuration_directory "${PREFIX}/share/cartographer_sdf_ros/configuration_files" \
-  -configuration_basename robot_mapping.lua -collect_metrics \
-  -save_state_filename "${WORK}/map.pbstream" >"${WORK}/node.log" 2>&1 &
-NODE=$!
-wait_for "Added trajectory with ID '0'" || fail "the node starts no trajectory"
+
+start_node() {
+  "${PREFIX}/lib/cartographer_sdf_ros/cartographer_sdf_node" \
+    -configuration_directory "${PREFIX}/share/cartographer_sdf_ros/configuration_files" \
+    -configuration_basename "$@" >"${WORK}/node.log" 2>&1 &
+  NODE=$!
+  wait_for "Added trajectory with ID" || fail "the node starts no trajectory"
+}
+
+end_node() {
+  kill -INT "${NODE}"
+  wait "${NODE}" || fail "the node ends with an error"
+}
+
+drive() {
+  "${WORK}/workspace/install/cartographer_sdf_drive_test/lib/cartographer_sdf_drive_test/drive_test" "$1" "${LOG}" ||
+    { kill -INT "${NODE}" && fail "the drive failed"; }
+}
+
+MAP="${WORK}/map.pbstream"
+start_node robot_mapping.lua -save_state_filename "${MAP}"
 echo "ok   the node starts a trajectory"
-kill -INT "${NODE}"
-wait "${NODE}" || fail "the node ends with an error"
-[[ -s "${WORK}/map.pbstream" ]] || fail "the node saves no map"
+end_node
+[[ -s "${MAP}" ]] || fail "the node saves no map"
 echo "ok   it saves its map as it ends"
+if [[ ! -f "${LOG}" ]]; then
+  echo "     no robot drives: there is no recording ${LOG}"
+  exit 0
+fi
+
+start_node robot_mapping_searcher_only.lua -collect_metrics -save_state_filename "${MAP}" \
+  --ros-args -p use_sim_time:=true
+drive map
+end_node
+constraints="$("${BUILD_DIR}/cartographer_sdf" info --input "${MAP}" |
+  sed -n 's/.* \([0-9]*\) inter-submap.*/\1/p')"
+((constraints >= MIN_INTER_CONSTRAINTS)) || fail "${constraints} inter-submap constraints in the map"
+echo "ok   ${constraints} inter-submap constraints in the map"
+start_node robot_localization.lua -load_state_filename "${MAP}" --ros-args -p use_sim_time:=true
+drive localize
+end_node
+echo "ok   the node ends as it should"
