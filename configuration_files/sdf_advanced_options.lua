@@ -411,6 +411,11 @@ SDF_GLOBAL_CONSTRAINTS = {
         local_slam_pose_rotation_weight = 1e5,
         odometry_translation_weight = 1e5,
         odometry_rotation_weight = 1e5,
+        -- [rad] Not an option of Cartographer: where local SLAM and odometry
+        -- turn by angles that differ by more between two scans, local SLAM has
+        -- slipped, and the map may give way. Smaller: more places give way; pi:
+        -- none.
+        min_slip_angle = 0.15,
         max_num_iterations = 200,
       },
       -- Closures that the optimised map contradicts are removed, and the map is

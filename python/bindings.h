@@ -7,6 +7,7 @@
 #ifndef PYTHON_BINDINGS_H_
 #define PYTHON_BINDINGS_H_
 
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,7 @@
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/host_motion.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "pybind11/pybind11.h"
 
 namespace cartographer_sdf {
@@ -43,6 +45,9 @@ template <typename T>
 struct WithHostMotion : T {
   std::optional<HostMotion> host_motion;
 };
+
+// (trajectory, node at the end of the step) to the angle of the slip.
+std::map<std::pair<int, int>, double> SlipsByNode(const Slips& slips);
 
 // 0: as many threads as the machine supports. ValueError for other nonsense.
 Executor ExecutorOf(int threads);

@@ -48,6 +48,14 @@ py::str Format(const char* const format, const py::tuple& values) {
 
 }  // namespace
 
+std::map<std::pair<int, int>, double> SlipsByNode(const Slips& slips) {
+  std::map<std::pair<int, int>, double> by_node;
+  for (const auto& [node, angle] : slips) {
+    by_node[{node.trajectory, node.index}] = angle;
+  }
+  return by_node;
+}
+
 Executor ExecutorOf(const int threads) {
   if (threads < 0 || threads > kMaxThreads) {
     throw py::value_error("threads must be from 0 to 1024");

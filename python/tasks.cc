@@ -198,6 +198,10 @@ void BindClosedMap(py::module_* const module) {
             }
             return ids;
           })
+      .def_property_readonly("slips",
+                             [](const ClosedMap& result) {
+                               return SlipsByNode(result.closed.slips);
+                             })
       .def_readonly("stage_seconds", &ClosedMap::stage_seconds);
   module->def("close_loops", &CloseLoopsOf, py::arg("path"),
               py::arg("output") = py::none(), py::arg("options") = Options(),

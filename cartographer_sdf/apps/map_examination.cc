@@ -78,15 +78,16 @@ void AdviseOnTrajectories(const MapExamination& map,
   constexpr double kManyBroken = 0.05;
   // Willow, ACES, Killian Court and offices: below 1.5 %.
   constexpr double kNoisy = 0.03;
-  if (!map.torn_submaps.empty() ||
+  if (!map.torn_submaps.empty() || !map.slips.empty() ||
       static_cast<double>(map.broken_links.size()) >
           kManyBroken * static_cast<double>(map.num_places)) {
     advice->push_back(absl::StrFormat(
-        "local SLAM slipped: %d submaps are torn inside, and behind %d the "
-        "walls contradict where it put the next ones. Drive slower there, use "
-        "odometry or an IMU, or let the front end search for each scan "
+        "local SLAM slipped: %d submaps are torn inside, behind %d the walls "
+        "contradict where it put the next ones, and at %d steps odometry "
+        "turned otherwise. Drive slower there, use odometry or an IMU, or let "
+        "the front end search for each scan "
         "(use_online_correlative_scan_matching)",
-        map.torn_submaps.size(), map.broken_links.size()));
+        map.torn_submaps.size(), map.broken_links.size(), map.slips.size()));
   }
   const double noise = map.along_trajectories.contradiction_ratio;
   if (noise > kNoisy) {
@@ -169,6 +170,8 @@ MapExamination ExamineMap(const LoopClosingOptions& options,
       options.closing.tear, map.state.pose_graph, map.point_clouds, executor,
       clock.Begin("find torn submaps"));
   clock.End();
+  result.slips = FindSlips(options.closing.optimization.min_slip_angle,
+                           map.state.pose_graph);
   return result;
 }
 

@@ -19,6 +19,7 @@
 #include "cartographer_sdf/execution/executor.h"
 #include "cartographer_sdf/execution/stage_clock.h"
 #include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "cartographer_sdf/verification/tear.h"
 
 namespace cartographer_sdf {
@@ -36,6 +37,8 @@ struct MapExamination {
   // The first submap of each link that walls contradict.
   std::set<SubmapId> broken_links;
   std::map<SubmapId, Tear> torn_submaps;
+  // Steps of local SLAM that odometry contradicts.
+  Slips slips;
   // Places that verification would take for themselves in another pose, turned
   // by half a turn or shifted.
   size_t num_self_similar = 0;

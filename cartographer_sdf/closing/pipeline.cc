@@ -207,6 +207,8 @@ ClosedGraph CloseGraph(const ClosingOptions& options, const GraphToClose& graph,
         FindTornSubmaps(options.tear, *graph.pose_graph, *graph.point_clouds,
                         executor, clock->Begin("find torn submaps"));
   }
+  result.slips =
+      FindSlips(options.optimization.min_slip_angle, *graph.pose_graph);
   clock->Begin("select consistent");
   SelectClosures(options.consistency, *graph.odometry, result.torn_submaps,
                  &result.closures);

@@ -28,6 +28,7 @@
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 
 namespace cartographer_sdf {
 
@@ -97,6 +98,8 @@ struct ClosedGraph {
   std::vector<Closure> closures;  // of all accepted matches, in their order
   // Empty if they were not searched for.
   std::map<SubmapId, Tear> torn_submaps;
+  // Where the optimisation may give way.
+  Slips slips;
   // Optimised, with the new constraints at the end; unchanged if there are
   // none.
   PoseGraph pose_graph;

@@ -220,6 +220,7 @@ inline void VisitOptions(OptionVisitor& visit, OptimizationOptions& options) {
         options.local_slam_pose_rotation_weight);
   visit("odometry_translation_weight", options.odometry_translation_weight);
   visit("odometry_rotation_weight", options.odometry_rotation_weight);
+  visit("min_slip_angle", options.min_slip_angle);
   visit("max_num_iterations", options.max_num_iterations);
 }
 

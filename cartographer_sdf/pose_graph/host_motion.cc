@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cartographer_sdf/pose_graph/slips.h"
+
 namespace cartographer_sdf {
 namespace {
 
@@ -54,11 +56,18 @@ std::optional<HostMotion> PredictHostMotion(const OptimizationOptions& host,
                                             const PoseGraph& pose_graph) {
   const std::optional<OdometryWeights> weights =
       SmallestWeights(in_force, pose_graph);
-  if (!weights || AreAlike(*weights, WeightsOf(host))) return std::nullopt;
-  HostMotion motion{WeightsOf(host), *weights, 0.};
+  if (!weights) return std::nullopt;
+  const size_t num_slips =
+      FindSlips(in_force.min_slip_angle, pose_graph).size();
+  if (num_slips == 0 && AreAlike(*weights, WeightsOf(host))) {
+    return std::nullopt;
+  }
+  HostMotion motion{WeightsOf(host), *weights, num_slips, 0.};
   PoseGraph moved = pose_graph;
   moved.odometry_weights.clear();
-  Optimize(host, /*frozen_trajectories=*/{}, &moved);
+  OptimizationOptions rigid = host;
+  rigid.min_slip_angle = M_PI;  // none
+  Optimize(rigid, /*frozen_trajectories=*/{}, &moved);
   for (const auto& [id, node] : pose_graph.nodes) {
     motion.max_translation = std::max(
         motion.max_translation, (moved.nodes.at(id).T_map_node.translation() -

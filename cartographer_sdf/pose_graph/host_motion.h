@@ -3,11 +3,13 @@
 
 // What Cartographer does to a map that it loads unfrozen: it optimises it
 // again, with the weights of its own configuration. Where these trust odometry
-// more than the map does, they bend it.
+// more than the map does, they bend it; so does a slip, at which it does not
+// give way.
 
 #ifndef CARTOGRAPHER_SDF_POSE_GRAPH_HOST_MOTION_H_
 #define CARTOGRAPHER_SDF_POSE_GRAPH_HOST_MOTION_H_
 
+#include <cstddef>
 #include <optional>
 
 #include "cartographer_sdf/pose_graph/optimization.h"
@@ -20,13 +22,16 @@ struct HostMotion {
   // where trajectories have weights of their own, the smallest.
   OdometryWeights host_weights;
   OdometryWeights map_weights;
+  // The host holds slips rigidly (slips.h).
+  size_t num_slips = 0;
   // The largest motion of a node in the map frame [m].
   double max_translation = 0.;
 };
 
 // Predicts it for a graph that was optimised with `in_force` and is optimised
 // by the host with `host`, from its poses to a minimum near them. None where
-// both weigh the graph's odometry the same, or where it has none.
+// the graph has no odometry, or where both weigh it the same and local SLAM did
+// not slip.
 [[nodiscard]] std::optional<HostMotion> PredictHostMotion(
     const OptimizationOptions& host, const OptimizationOptions& in_force,
     const PoseGraph& pose_graph);

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "cartographer_sdf/pose_graph/rotation_first.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "cartographer_sdf/pose_graph/spa_graph.h"
 #include "cartographer_sdf/pose_graph/sparse_solver.h"
 #include "glog/logging.h"
@@ -20,6 +22,10 @@ namespace {
 // A single false closure can make up nearly all of the cost (1e7); the rest
 // must still converge to a millimetre, which costs 1e-1.
 constexpr double kFunctionTolerance = 1e-9;
+// At slips, errors lie on either side of the Huber loss's knee in turn, and the
+// cost falls ever more slowly. On fr079, ACES and Killian Court, what is left
+// at 1e-6 changes the mean node error by 2 mm at most.
+constexpr double kFunctionToleranceWithSlips = 1e-6;
 
 class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
  public:
@@ -128,6 +134,10 @@ std::string Validate(const OptimizationOptions& options) {
       return std::string(name) + " must be finite and not negative";
     }
   }
+  if (!(options.min_slip_angle > 0.) ||
+      !std::isfinite(options.min_slip_angle)) {
+    return "min_slip_angle must be positive";
+  }
   if (options.max_num_iterations < 1) {
     return "max_num_iterations must be positive";
   }
@@ -156,7 +166,9 @@ OptimizationSummary Optimize(const OptimizationOptions& options,
     }
   }
   const ceres::Solver::Summary solution = SolveSparse(
-      SparseSolverOptions(options.max_num_iterations, kFunctionTolerance),
+      SparseSolverOptions(options.max_num_iterations,
+                          graph.num_slips > 0 ? kFunctionToleranceWithSlips
+                                              : kFunctionTolerance),
       graph, options.huber_scale,
       [](const SpaEdge& edge) { return new SpaCostFunction(edge); },
       &graph.poses);
@@ -197,19 +209,13 @@ std::optional<OdometryWeights> InferOdometryWeights(
   }
   Regression translation, rotation;
   int num_steps = 0;
-  auto previous = pose_graph.nodes.begin();
-  for (auto it = pose_graph.nodes.begin(); it != pose_graph.nodes.end();
-       previous = it++) {
-    const auto& [from_id, from] = *previous;
-    const auto& [id, to] = *it;
-    if (from_id.trajectory != id.trajectory || id.index != from_id.index + 1 ||
-        !from.T_local_node || !to.T_local_node ||
-        !to.T_previous_node_by_odometry) {
-      continue;
-    }
-    const Rigid2 optimized = from.T_map_node.Inverse() * to.T_map_node;
-    const Rigid2 local = from.T_local_node->Inverse() * *to.T_local_node;
-    const Rigid2& odometry = *to.T_previous_node_by_odometry;
+  for (auto it = pose_graph.nodes.begin(); it != pose_graph.nodes.end(); ++it) {
+    const std::optional<Step> step = StepTo(pose_graph, it);
+    if (!step || IsSlip(options.min_slip_angle, *step)) continue;
+    const Rigid2 optimized =
+        std::prev(it)->second.T_map_node.Inverse() * it->second.T_map_node;
+    const Rigid2& local = step->by_local_slam;
+    const Rigid2& odometry = step->by_odometry;
     const Eigen::Vector2d x = odometry.translation() - local.translation();
     const Eigen::Vector2d y = optimized.translation() - local.translation();
     translation.Add(x.x(), y.x());

@@ -10,6 +10,11 @@
 // - between consecutive nodes of a trajectory, the relative motion by local
 //   SLAM and, where nodes have it, by odometry.
 //
+// Where odometry contradicts local SLAM (slips.h), neither is believed more
+// than closures are: both motions, and the constraints of the submaps that hold
+// scans from both sides, are under the Huber loss, too. The host holds them
+// rigidly.
+//
 // Landmark observations and fixed frame (GPS) poses are not read and hence not
 // optimised. Each landmark moves with the node nearest to it.
 //
@@ -38,6 +43,9 @@ struct OptimizationOptions {
   double local_slam_pose_rotation_weight = 1e5;
   double odometry_translation_weight = 1e5;
   double odometry_rotation_weight = 1e5;
+  // Steps at which local SLAM and odometry turn by angles that differ by more
+  // [rad] are slips (slips.h). Not of the host; pi and more find none.
+  double min_slip_angle = 0.15;
   int max_num_iterations = 200;
 };
 
@@ -83,7 +91,7 @@ struct ConstraintError {
 // nodes, local SLAM and odometry pull in proportion to their squared weights,
 // and everything else is soft or far away. An optimised step therefore lies at
 //   local + lambda * (odometry - local),  lambda = w_o^2 / (w_o^2 + w_l^2),
-// and linear regression over all steps yields lambda.
+// and linear regression over all steps but slips yields lambda.
 //
 // The weights are relative to the local SLAM weights of the options. Zero if
 // odometry was not used, as in a map that was never optimised. None if there is

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -18,20 +19,22 @@ Eigen::Vector3d ToVector(const Rigid2& pose) {
   return {pose.translation().x(), pose.translation().y(), pose.rotation()};
 }
 
-void AddConstraints(const PoseGraph& pose_graph,
+void AddConstraints(const PoseGraph& pose_graph, const Slips& slips,
                     const std::map<SubmapId, int>& submap_indices,
                     const std::map<NodeId, int>& node_indices,
                     SpaGraph* const graph) {
+  const std::set<SubmapId> slipped = SubmapsWithSlips(slips, pose_graph);
   for (const Constraint& constraint : pose_graph.constraints) {
     const auto submap = submap_indices.find(constraint.submap);
     const auto node = node_indices.find(constraint.node);
     CHECK(submap != submap_indices.end() && node != node_indices.end())
         << "constraint of submap " << constraint.submap << " and node "
         << constraint.node << ", which are not both in the graph";
-    graph->edges.push_back(
-        SpaEdge{submap->second, node->second, constraint.T_submap_node,
-                constraint.translation_weight, constraint.rotation_weight,
-                constraint.tag == Constraint::Tag::kInterSubmap});
+    const bool robust = constraint.tag == Constraint::Tag::kInterSubmap ||
+                        slipped.count(constraint.submap) != 0;
+    graph->edges.push_back(SpaEdge{
+        submap->second, node->second, constraint.T_submap_node,
+        constraint.translation_weight, constraint.rotation_weight, robust});
   }
 }
 
@@ -46,8 +49,8 @@ OdometryWeights WeightsOf(const OptimizationOptions& options,
 // Adds edges between consecutive nodes, none across a trimmed node; as in the
 // host, none for frozen trajectories.
 void AddConsecutiveNodes(const OptimizationOptions& options,
-                         const PoseGraph& pose_graph, const int first_index,
-                         SpaGraph* const graph) {
+                         const PoseGraph& pose_graph, const Slips& slips,
+                         const int first_index, SpaGraph* const graph) {
   int index = first_index;
   const std::pair<const NodeId, Node>* previous = nullptr;
   for (const auto& current : pose_graph.nodes) {
@@ -56,12 +59,13 @@ void AddConsecutiveNodes(const OptimizationOptions& options,
         previous->first.index + 1 == current.first.index &&
         !graph->constant[index]) {
       const Node& node = current.second;
+      const bool robust = slips.count(current.first) != 0;
       if (node.T_previous_node_by_odometry.has_value()) {
         const OdometryWeights weights =
             WeightsOf(options, pose_graph, current.first.trajectory);
-        graph->edges.push_back(SpaEdge{index - 1, index,
-                                       *node.T_previous_node_by_odometry,
-                                       weights.translation, weights.rotation});
+        graph->edges.push_back(
+            SpaEdge{index - 1, index, *node.T_previous_node_by_odometry,
+                    weights.translation, weights.rotation, robust});
       }
       if (previous->second.T_local_node.has_value() &&
           node.T_local_node.has_value()) {
@@ -69,7 +73,7 @@ void AddConsecutiveNodes(const OptimizationOptions& options,
             index - 1, index,
             previous->second.T_local_node->Inverse() * *node.T_local_node,
             options.local_slam_pose_translation_weight,
-            options.local_slam_pose_rotation_weight});
+            options.local_slam_pose_rotation_weight, robust});
       }
     }
     previous = &current;
@@ -125,8 +129,10 @@ SpaGraph BuildSpaGraph(const OptimizationOptions& options,
   for (const auto& [id, node] : pose_graph.nodes) {
     node_indices[id] = add_pose(id.trajectory, node.T_map_node);
   }
-  AddConstraints(pose_graph, submap_indices, node_indices, &graph);
-  AddConsecutiveNodes(options, pose_graph,
+  const Slips slips = FindSlips(options.min_slip_angle, pose_graph);
+  graph.num_slips = slips.size();
+  AddConstraints(pose_graph, slips, submap_indices, node_indices, &graph);
+  AddConsecutiveNodes(options, pose_graph, slips,
                       static_cast<int>(pose_graph.submap_poses.size()), &graph);
   FixGauge(&graph);
   return graph;

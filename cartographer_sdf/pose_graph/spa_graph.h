@@ -9,6 +9,7 @@
 #define CARTOGRAPHER_SDF_POSE_GRAPH_SPA_GRAPH_H_
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <set>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct SpaEdge {
   Rigid2 T_start_end;
   double translation_weight = 0.;
   double rotation_weight = 0.;
-  // Whether the Huber loss applies: an inter-submap constraint.
+  // Whether the Huber loss applies: to inter-submap constraints and to what
+  // holds the two sides of a slip together (slips.h).
   bool robust = false;
 };
 
@@ -38,6 +40,7 @@ struct SpaGraph {
   // without one, the first submap (the first node if it has no submap).
   std::vector<bool> constant;
   std::vector<SpaEdge> edges;
+  size_t num_slips = 0;
 };
 
 [[nodiscard]] SpaGraph BuildSpaGraph(const OptimizationOptions& options,

@@ -125,6 +125,7 @@ absl::Status WriteCloseLoopsReport(const ReportRequest& request,
   JudgeClosing(result, &inspection);
   AddClosingNumbers(result, &inspection);
   AddTornSubmaps(result.closed.torn_submaps, &inspection);
+  AddSlips(result.closed.slips, result.state.pose_graph, &inspection);
   inspection.tables = {
       MakeClosureTable(options, result.closed.closures, result.refused)};
   inspection.histograms = ClosureHistograms(result);

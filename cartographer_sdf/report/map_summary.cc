@@ -185,6 +185,20 @@ std::string DescribeMap(const std::string& name, const MapState& map) {
   return text;
 }
 
+std::string DescribeSlips(const Slips& slips, const PoseGraph& pose_graph) {
+  if (slips.empty()) return "";
+  double largest = 0.;
+  for (const auto& [node, angle] : slips) {
+    largest = std::max(largest, std::abs(angle));
+  }
+  const size_t num_submaps = SubmapsWithSlips(slips, pose_graph).size();
+  return absl::StrFormat(
+      "Local SLAM slipped at %d %s, in %d %s: there odometry turned by angles "
+      "that differ by up to %.1f deg",
+      slips.size(), slips.size() == 1 ? "step" : "steps", num_submaps,
+      num_submaps == 1 ? "submap" : "submaps", largest * 180. / M_PI);
+}
+
 std::string FormatUniversalTime(const int64_t ticks) {
   const int64_t seconds = ticks / kTicksPerSecond;
   if (ticks < 0 || seconds >= kSecondsFromYearOneTo10000) return "-";

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "cartographer_sdf/pbstream/map_file.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 
 namespace cartographer_sdf {
 
@@ -38,6 +40,11 @@ constexpr double kGapSeconds = 10.;
 // Human-readable, some tens of lines. `name` is the name of the map.
 [[nodiscard]] std::string DescribeMap(const std::string& name,
                                       const MapState& map);
+
+// "Local SLAM slipped at 2 steps, in 3 submaps: there odometry turned by angles
+// that differ by up to 11.3 deg". Empty without slips.
+[[nodiscard]] std::string DescribeSlips(const Slips& slips,
+                                        const PoseGraph& pose_graph);
 
 // Universal time, 100 ns ticks since 0001-01-01, as "2019-05-23 14:00:01 UTC";
 // "-" outside the years 1 to 9999.

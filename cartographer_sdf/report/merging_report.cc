@@ -153,6 +153,7 @@ absl::Status WriteMergingReport(const ReportRequest& request,
     AddDisplacement(&inspection);
   }
   AddTornSubmaps(result.closed.torn_submaps, &inspection);
+  AddSlips(result.closed.slips, result.state.pose_graph, &inspection);
   inspection.tables = {MergingTable(stages, result)};
   const auto read = [&](const SubmapCallback& on_submap) {
     absl::Status status;

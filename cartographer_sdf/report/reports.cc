@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/report/map_summary.h"
 
 namespace cartographer_sdf {
 
@@ -72,6 +73,21 @@ void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
     if (submap != inspection->submaps.end()) {
       submap->second.flaw = "torn inside: " + description;
     }
+  }
+}
+
+void AddSlips(const Slips& slips, const PoseGraph& pose_graph,
+              Inspection* const inspection) {
+  if (slips.empty()) return;
+  inspection->remarks.push_back(
+      DescribeSlips(slips, pose_graph) +
+      ". Where closures ask for it, the map gives way.");
+  for (const SubmapId& id : SubmapsWithSlips(slips, pose_graph)) {
+    const auto submap = inspection->submaps.find(id);
+    if (submap == inspection->submaps.end() || !submap->second.flaw.empty()) {
+      continue;
+    }
+    submap->second.flaw = "local SLAM slipped in it: odometry turned otherwise";
   }
 }
 

@@ -19,6 +19,8 @@
 #include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "cartographer_sdf/report/inspection.h"
 #include "cartographer_sdf/report/inspection_maps.h"
 #include "cartographer_sdf/report/inspector_page.h"
@@ -44,6 +46,10 @@ void AddOptimization(const OptimizationOptions& options,
 // A remark, and the flaw of the submap.
 void AddTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
                     Inspection* inspection);
+
+// A remark, and the flaw of the submaps that hold slips.
+void AddSlips(const Slips& slips, const PoseGraph& pose_graph,
+              Inspection* inspection);
 
 // --- The pages, in request.directory. ---
 

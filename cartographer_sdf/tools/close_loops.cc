@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_format.h"
+#include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -45,6 +46,7 @@ void RecordClosing(const LoopClosingResult& result, RunRecord* const record) {
   const int num_closures = in_graph == statuses.end() ? 0 : in_graph->second;
   record->Count("closures", static_cast<size_t>(num_closures));
   RecordTornSubmaps(result.closed.torn_submaps, record);
+  RecordSlips(result.closed.slips, result.state.pose_graph, record);
   RecordConvergence(result.closed.optimizations, record);
   record->answer["closures"] = Json(statuses);
   if (num_closures == 0) {
@@ -65,6 +67,10 @@ void PrintSummary(const LoopClosingResult& result) {
     for (const auto& [id, tear] : result.closed.torn_submaps) {
       std::cout << "  " << DescribeTear(id, tear) << "\n";
     }
+  }
+  if (!result.closed.slips.empty()) {
+    std::cout << DescribeSlips(result.closed.slips, result.state.pose_graph)
+              << "; where closures ask for it, the map gives way.\n";
   }
   if (result.closed.closures.empty()) {
     std::cout << "No loop closure was found; the map is unchanged.\n";

@@ -14,6 +14,7 @@
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/tools/flags.h"
@@ -33,19 +34,6 @@ DEFINE_bool(quality, false,
 namespace cartographer_sdf {
 namespace {
 
-// Only they need the options; a map's contents can be described without.
-absl::StatusOr<std::map<SubmapId, Tear>> TornSubmapsOf(
-    const MapState& state, const std::map<NodeId, PointCloud2>& scans,
-    StageProgress* const progress) {
-  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.status();
-  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
-  if (!num_threads.ok()) return num_threads.status();
-  return FindTornSubmaps(options->loop_closing.closing.tear, state.pose_graph,
-                         scans, MakeExecutor(*num_threads),
-                         progress->Begin("find torn submaps"));
-}
-
 std::string DescribeTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps) {
   std::string text =
       absl::StrFormat("\nTorn submaps: %d\n", torn_submaps.size());
@@ -53,6 +41,32 @@ std::string DescribeTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps) {
     absl::StrAppend(&text, "  ", DescribeTear(id, tear), "\n");
   }
   return text;
+}
+
+std::string SlipLine(const Slips& slips, const PoseGraph& pose_graph) {
+  if (slips.empty()) return "";
+  return DescribeSlips(slips, pose_graph) + "\n";
+}
+
+// Only this and the quality need the options; a map's contents can be described
+// without.
+absl::StatusOr<std::string> ExamineTears(
+    const MapState& state, const std::map<NodeId, PointCloud2>& scans,
+    StageProgress* const progress, RunRecord* const record) {
+  const absl::StatusOr<Options> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.status();
+  const absl::StatusOr<int> num_threads = NumThreadsOfFlags();
+  if (!num_threads.ok()) return num_threads.status();
+  const ClosingOptions& closing = options->loop_closing.closing;
+  const std::map<SubmapId, Tear> torn_submaps = FindTornSubmaps(
+      closing.tear, state.pose_graph, scans, MakeExecutor(*num_threads),
+      progress->Begin("find torn submaps"));
+  const Slips slips =
+      FindSlips(closing.optimization.min_slip_angle, state.pose_graph);
+  RecordTornSubmaps(torn_submaps, record);
+  RecordSlips(slips, state.pose_graph, record);
+  return absl::StrCat(DescribeTornSubmaps(torn_submaps),
+                      SlipLine(slips, state.pose_graph));
 }
 
 Json TrajectoriesJson(const MapState& state) {
@@ -145,7 +159,9 @@ absl::StatusOr<std::string> Examine(StageProgress* const progress,
       ExamineMap(loop_closing, *map, executor, progress->Callback());
   RecordTornSubmaps(examination.torn_submaps, record);
   RecordQuality(examination, record);
+  RecordSlips(examination.slips, map->state.pose_graph, record);
   return absl::StrCat(DescribeTornSubmaps(examination.torn_submaps),
+                      SlipLine(examination.slips, map->state.pose_graph),
                       DescribeQuality(examination));
 }
 
@@ -165,11 +181,10 @@ absl::Status RunInfo(RunRecord* const record) {
   RecordContents(*state, record);
   std::string text = DescribeMap(FLAGS_input, *state);
   if (only_tears) {
-    const absl::StatusOr<std::map<SubmapId, Tear>> torn_submaps =
-        TornSubmapsOf(*state, scans, &progress);
-    if (!torn_submaps.ok()) return torn_submaps.status();
-    RecordTornSubmaps(*torn_submaps, record);
-    text += DescribeTornSubmaps(*torn_submaps);
+    const absl::StatusOr<std::string> examined =
+        ExamineTears(*state, scans, &progress, record);
+    if (!examined.ok()) return examined.status();
+    text += *examined;
   } else if (FLAGS_quality) {
     const absl::StatusOr<std::string> examined = Examine(&progress, record);
     if (!examined.ok()) return examined.status();

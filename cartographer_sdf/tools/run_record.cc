@@ -26,13 +26,19 @@ namespace {
 
 constexpr char kAnyWarning[] = "warning";
 
-constexpr RunWarning kAllWarnings[] = {
-    RunWarning::kRepaired,        RunWarning::kIncomplete,
-    RunWarning::kTornSubmaps,     RunWarning::kNotConverged,
-    RunWarning::kOdometryBends,   RunWarning::kDoubtful,
-    RunWarning::kOdometryLeftOut, RunWarning::kContradictions,
-    RunWarning::kSessionsLeftOut, RunWarning::kWindowsNotLocalized,
-    RunWarning::kPlacesNotUsed,   RunWarning::kMapsFailed};
+constexpr RunWarning kAllWarnings[] = {RunWarning::kRepaired,
+                                       RunWarning::kIncomplete,
+                                       RunWarning::kTornSubmaps,
+                                       RunWarning::kSlips,
+                                       RunWarning::kNotConverged,
+                                       RunWarning::kOdometryBends,
+                                       RunWarning::kDoubtful,
+                                       RunWarning::kOdometryLeftOut,
+                                       RunWarning::kContradictions,
+                                       RunWarning::kSessionsLeftOut,
+                                       RunWarning::kWindowsNotLocalized,
+                                       RunWarning::kPlacesNotUsed,
+                                       RunWarning::kMapsFailed};
 
 std::vector<std::string> AllConditions() {
   std::vector<std::string> names = {OutcomeName(Outcome::kRefused),
@@ -82,6 +88,8 @@ const char* RunWarningCode(const RunWarning warning) {
       return "incomplete";
     case RunWarning::kTornSubmaps:
       return "torn_submaps";
+    case RunWarning::kSlips:
+      return "slips";
     case RunWarning::kNotConverged:
       return "not_converged";
     case RunWarning::kOdometryBends:

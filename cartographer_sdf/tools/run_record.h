@@ -42,6 +42,7 @@ enum class RunWarning {
   kRepaired,             // records without data were left out
   kIncomplete,           // records without data are in the map
   kTornSubmaps,          // local SLAM slipped inside of submaps
+  kSlips,                // odometry contradicts steps of local SLAM
   kNotConverged,         // the optimisation ran out of iterations
   kOdometryBends,        // Cartographer will bend the map, loaded unfrozen
   kDoubtful,             // audit found doubtful constraints

@@ -15,6 +15,7 @@
 #include "cartographer_sdf/file/pending_file.h"
 #include "cartographer_sdf/file/whole_file.h"
 #include "cartographer_sdf/pose_graph/host_motion.h"
+#include "cartographer_sdf/report/map_summary.h"
 #include "cartographer_sdf/tools/file_flags.h"
 #include "cartographer_sdf/tools/flags.h"
 #include "cartographer_sdf/tools/map_picture.h"
@@ -190,6 +191,20 @@ void RecordTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
       absl::StrFormat("%d submaps are torn inside", torn_submaps.size()));
 }
 
+void RecordSlips(const Slips& slips, const PoseGraph& pose_graph,
+                 RunRecord* const record) {
+  record->Count("slips", slips.size());
+  Json steps = Json::array();
+  for (const auto& [node, angle] : slips) {
+    steps.push_back({{"trajectory", node.trajectory},
+                     {"node", node.index},
+                     {"angle", angle}});
+  }
+  record->answer["slips"] = std::move(steps);
+  if (slips.empty()) return;
+  record->Warn(RunWarning::kSlips, DescribeSlips(slips, pose_graph));
+}
+
 void PrintStages(const std::vector<std::pair<std::string, double>>& seconds) {
   for (const auto& [stage, duration] : seconds) {
     std::cout << absl::StrFormat("  %7.2f s %s\n", duration, stage);
@@ -222,16 +237,24 @@ void WarnOfHostMotion(const ClosingOptions& closing,
     return absl::StrFormat("%.3g and %.3g", weights.translation,
                            weights.rotation);
   };
-  const std::string sentence = absl::StrFormat(
+  std::string sentence = absl::StrFormat(
       "Cartographer would move nodes by up to %.1f m if it loaded this map "
       "unfrozen, with its odometry weights of %s; those of the map are %s",
       motion->max_translation, format(motion->host_weights),
       format(motion->map_weights));
+  if (motion->num_slips > 0) {
+    absl::StrAppend(&sentence,
+                    ", and it does not give way where local SLAM "
+                    "slipped");
+  }
   record->Warn(RunWarning::kOdometryBends, sentence);
-  std::cout << sentence
-            << ".\n  Load it frozen, set odometry_translation_weight and "
-               "odometry_rotation_weight of POSE_GRAPH.optimization_problem to "
-               "those of the map, or write it with --drop_odometry.\n";
+  std::cout << sentence << ".\n  Load it frozen"
+            << (motion->num_slips > 0
+                    ? ".\n"
+                    : ", set odometry_translation_weight and "
+                      "odometry_rotation_weight of "
+                      "POSE_GRAPH.optimization_problem to those of the map, or "
+                      "write it with --drop_odometry.\n");
 }
 
 absl::Status CheckDropOdometry() {

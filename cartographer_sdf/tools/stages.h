@@ -19,6 +19,8 @@
 #include "cartographer_sdf/config/options.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/place_store/described_map.h"
+#include "cartographer_sdf/pose_graph/pose_graph.h"
+#include "cartographer_sdf/pose_graph/slips.h"
 #include "cartographer_sdf/report/reports.h"
 #include "cartographer_sdf/tools/progress.h"
 #include "cartographer_sdf/tools/run_record.h"
@@ -68,6 +70,8 @@ struct MapTask {
 
 void RecordTornSubmaps(const std::map<SubmapId, Tear>& torn_submaps,
                        RunRecord* record);
+void RecordSlips(const Slips& slips, const PoseGraph& pose_graph,
+                 RunRecord* record);
 
 // These print the durations of stages, the statuses of closures, a failure of
 // the last optimisation, and the paths of --output and --report.

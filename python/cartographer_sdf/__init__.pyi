@@ -287,6 +287,10 @@ class MapExamination:
     @property
     def torn_submaps(self) -> List[SubmapId]: ...
     @property
+    def slips(self) -> Dict[Tuple[int, int], float]:
+        """Steps at which odometry turned by another angle than local SLAM: (trajectory,
+        node at the end of the step) to by how much local SLAM turned further [rad]."""
+    @property
     def self_similar(self) -> int:
         """Places that would be taken for themselves in another pose."""
     @property
@@ -334,6 +338,10 @@ class ClosedMap:
         """What verification did not accept."""
     @property
     def torn_submaps(self) -> List[SubmapId]: ...
+    @property
+    def slips(self) -> Dict[Tuple[int, int], float]:
+        """Steps at which odometry turned by another angle than local SLAM: (trajectory,
+        node at the end of the step) to by how much local SLAM turned further [rad]."""
     @property
     def host_motion(self) -> Optional[HostMotion]:
         """None where Cartographer would not move the map."""

@@ -118,6 +118,10 @@ TEST_F(ClosingOptionEffectsTest, NoneIsWithout) {
       {"optimization.odometry_", with([](ClosingOptions* options) {
          options->infer_odometry_weights = false;
        })},
+      // Of the size of local SLAM's noise here.
+      {"optimization.min_slip_angle", with([](ClosingOptions* options) {
+         options->optimization.min_slip_angle *= 0.01;
+       })},
       {"outlier_rejection.max_num_rounds", with(all_enter)},
       {"outlier_rejection.max_translation_error_meters",
        [this, all_enter](const ClosingOptions& options) {

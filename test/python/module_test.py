@@ -308,6 +308,9 @@ class MapTest(unittest.TestCase):
                          [tuple(id.values()) for id in quality["broken_links"]])
         self.assertEqual([tuple(id) for id in examined.torn_submaps],
                          [tuple(id.values()) for id in by_program["torn_submaps"]])
+        self.assertEqual(examined.slips,
+                         {(slip["trajectory"], slip["node"]): slip["angle"]
+                          for slip in by_program["slips"]})
         self.assertEqual((examined.self_similar, examined.places, examined.mean_area),
                          (quality["self_similar"], quality["places"], quality["mean_area"]))
         self.assertEqual(examined.submaps, by_program["counts"]["submaps"])

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "cartographer_sdf/evaluation/map_errors.h"
 #include "cartographer_sdf/pbstream/map_file.h"
 #include "cartographer_sdf/place_store/place_file.h"
+#include "cartographer_sdf/report/json.h"
 #include "cartographer_sdf/report/match_table.h"
 #include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
@@ -28,6 +30,7 @@ namespace cartographer_sdf::close_loops_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -160,6 +163,50 @@ TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
                                    HasSubstr("\n  0,9: part")));
   EXPECT_THAT(directory_->Read("slipped_report/index.html"),
               AllOf(HasSubstr("torn inside"), HasSubstr("0,9: part")));
+}
+
+TEST_F(CloseLoopsTest, TellsOfSlips) {
+  const std::string slipping = File("slipping.pbstream");
+  DriftOptions drift;
+  // Some 0.02 rad between two scans.
+  drift.odometry_yaw_bias = 0.5;
+  drift.local_slam_fraction = 0.;
+  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, slipping,
+                           /*with_submaps=*/true, drift);
+  directory_->Write("sensitive.lua",
+                    "include \"sdf_global_constraints.lua\"\n"
+                    "SDF_GLOBAL_CONSTRAINTS.loop_closing.closing.optimization."
+                    "min_slip_angle = 0.01\n"
+                    "return SDF_GLOBAL_CONSTRAINTS\n");
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(),
+                     {"--configuration_directory", directory_->path(),
+                      "--configuration_basename", "sensitive.lua"});
+    return RunTestProgram(arguments);
+  };
+  const ProgramResult closed =
+      run({"close_loops", slipping, "-o", File("slipping_closed.pbstream"),
+           "--report", File("slipping_report"), "--result", File("slips.json"),
+           "--fail_on", "slips"});
+  EXPECT_EQ(closed.exit_code, 3) << closed.error;
+  EXPECT_THAT(closed.output,
+              ContainsRegex("Local SLAM slipped at [0-9]+ steps, in [0-9]+ "
+                            "submaps: there odometry turned by angles that "
+                            "differ by up to [0-9.]+ deg; where closures ask "
+                            "for it, the map gives way.\n"));
+  EXPECT_THAT(directory_->Read("slipping_report/index.html"),
+              AllOf(HasSubstr("Local SLAM slipped at"),
+                    HasSubstr("local SLAM slipped in it")));
+  const Json result = Json::parse(directory_->Read("slips.json"));
+  const Json& slips = result["slips"];
+  ASSERT_GT(slips.size(), 3u);
+  for (const Json& slip : slips) {
+    EXPECT_GT(std::abs(slip["angle"].get<double>()), 0.01);
+  }
+  EXPECT_THAT(run({"info", slipping, "--torn_submaps"}).output,
+              HasSubstr("\nLocal SLAM slipped at "));
+  EXPECT_THAT(run({"info", slipping, "--quality"}).output,
+              ContainsRegex("at [0-9]+ steps odometry turned otherwise"));
 }
 
 // What takes the time with large maps. Once to read, and once to write.
