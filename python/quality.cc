@@ -94,10 +94,9 @@ void BindQuality(py::module_* const module) {
                                    map.broken_links.end());
                              })
       .def_property_readonly("torn_submaps", &TornSubmapsOf)
-      .def_property_readonly("slips",
-                             [](const MapExamination& map) {
-                               return SlipsByNode(map.slips);
-                             })
+      .def_property_readonly(
+          "slips",
+          [](const MapExamination& map) { return SlipsByNode(map.slips); })
       .def_readonly("self_similar", &MapExamination::num_self_similar)
       .def_readonly("mean_area", &MapExamination::mean_area)
       .def_property_readonly("advice", &AdviseOnMap)

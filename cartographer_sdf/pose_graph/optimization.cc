@@ -51,6 +51,13 @@ class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
   const SpaEdge edge_;
 };
 
+ceres::Solver::Options SolverOptions(const OptimizationOptions& options,
+                                     const SpaGraph& graph) {
+  return SparseSolverOptions(
+      options.max_num_iterations,
+      graph.num_slips > 0 ? kFunctionToleranceWithSlips : kFunctionTolerance);
+}
+
 // Moves each landmark rigidly with the node that was nearest to it in the
 // plane; on ties, the first.
 void MoveLandmarks(const std::map<NodeId, Node>& old_nodes,
@@ -166,10 +173,7 @@ OptimizationSummary Optimize(const OptimizationOptions& options,
     }
   }
   const ceres::Solver::Summary solution = SolveSparse(
-      SparseSolverOptions(options.max_num_iterations,
-                          graph.num_slips > 0 ? kFunctionToleranceWithSlips
-                                              : kFunctionTolerance),
-      graph, options.huber_scale,
+      SolverOptions(options, graph), graph, options.huber_scale,
       [](const SpaEdge& edge) { return new SpaCostFunction(edge); },
       &graph.poses);
   if (solution.IsSolutionUsable()) {

@@ -4,9 +4,9 @@
 // Slips of local SLAM: steps between consecutive nodes at which the scan
 // matcher turned the robot by an angle that odometry contradicts. A pose graph
 // that holds a slip rigidly bends everything around it, and contradicts right
-// closures. Angles tell, translations do not: wheels measure a turn within one
-// step to a few degrees, and a scan matcher that slips turns [measured on
-// fr079].
+// closures. Angles tell where it slipped, and translations do not: on fr079,
+// whose front end tore it, odometry and local SLAM differ by up to 0.35 rad
+// there, as the truth says, but by no more than elsewhere in translation.
 
 #ifndef CARTOGRAPHER_SDF_POSE_GRAPH_SLIPS_H_
 #define CARTOGRAPHER_SDF_POSE_GRAPH_SLIPS_H_
