@@ -98,7 +98,7 @@ if wants tidy; then
 fi
 if wants cppcheck; then
   step "cppcheck"
-  cppcheck --quiet -j "${JOBS}" --std=c++17 --language=c++ --enable=warning,performance,portability \
+  cppcheck --quiet -j "${JOBS}" --std=c++17 --language=c++ --library=googletest --enable=warning,performance,portability \
     --inline-suppr --suppressions-list=.cppcheck -I . --error-exitcode=1 "${files[@]}" || failed+=(cppcheck)
 fi
 

@@ -93,10 +93,11 @@ class LowerEnvelope {
     }
     for (int k = 0; k < size_; ++k) {
       const int at = squares[k];
-      may_count_[k] =
-          (at != kNoSiteSquared) &
-          IsBelow(at, squares[k - 1], squares[k + 1], 1) &
+      const bool is_corner = IsBelow(at, squares[k - 1], squares[k + 1], 1);
+      const bool stands_out =
           IsBelow(at, squares[k - kReach], squares[k + kReach], kReach);
+      // Without branches, so that compilers compute several at once.
+      may_count_[k] = (at != kNoSiteSquared) & is_corner & stands_out;
     }
   }
 

@@ -117,11 +117,10 @@ TEST_F(ConfirmPlacementTest, PlacesOfTheMapWithoutALayoutTakeNoPart) {
 // A room of 8 m x 5 m, seen from its middle, against itself.
 class BareRoomTest : public ::testing::Test {
  protected:
-  BareRoomTest() {
-    place_ = *DescribePlace(
-        PlaceOptions(), {0, 0},
-        testing::SeeFrom(testing::BareRoom(8., 5.), {}, {{0., 0.}}));
-  }
+  BareRoomTest()
+      : place_(*DescribePlace(
+            PlaceOptions(), {0, 0},
+            testing::SeeFrom(testing::BareRoom(8., 5.), {}, {{0., 0.}}))) {}
   Place place_;
 };
 

@@ -114,8 +114,8 @@ TEST_F(InspectorPageTest, CarriesTheDocument) {
 
 TEST_F(InspectorPageTest, ShowsTheMainThingsWithoutJavaScript) {
   ASSERT_TRUE(rooms_.Draw().ok());
-  std::string html = RenderInspector(request_, rooms_.inspection);
-  html = html.substr(0, html.find("<script"));
+  const std::string page = RenderInspector(request_, rooms_.inspection);
+  const std::string html = page.substr(0, page.find("<script"));
   EXPECT_THAT(
       html,
       AllOf(HasSubstr("half of &lt;it&gt;"), HasSubstr("<td>97</td>"),
