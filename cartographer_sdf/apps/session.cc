@@ -81,20 +81,31 @@ void AddPlaces(const Session& session, const MapPart& part,
 }
 
 // Why little or nothing can be found in a map, and what helps; empty if nothing
-// is the matter.
-std::string ExplainBareMap(const DescribedMap& map, const double min_area) {
+// is the matter. Areas [m^2] are what all of it must show, and what two submaps
+// must have in common.
+std::string ExplainBareMap(const DescribedMap& map, const double min_area,
+                           const double min_common_area) {
   if (map.state.submaps.empty()) {
     return "; the map has no submaps: drive farther, or save it with "
-           "unfinished "
-           "submaps";
+           "unfinished submaps";
   }
   double area = 0.;
-  for (const auto& [id, place] : map.places)
-    area += ObservedArea(place.surface);
-  if (area >= min_area) return "";
-  const ComparedNumbers compared = FormatCompared(area, min_area, 0);
-  return absl::StrCat("; the map shows too little: ", compared.number, " m2, ",
-                      compared.threshold, " are needed");
+  double largest = 0.;
+  for (const auto& [id, place] : map.places) {
+    const double of_place = ObservedArea(place.surface);
+    area += of_place;
+    largest = std::max(largest, of_place);
+  }
+  if (area < min_area) {
+    const ComparedNumbers compared = FormatCompared(area, min_area, 0);
+    return absl::StrCat("; the map shows too little: ", compared.number,
+                        " m2, ", compared.threshold, " are needed");
+  }
+  if (largest >= min_common_area) return "";
+  const ComparedNumbers compared = FormatCompared(largest, min_common_area, 0);
+  return absl::StrCat("; no submap of the map shows more than ",
+                      compared.number, " m2, and two must have ",
+                      compared.threshold, " in common");
 }
 
 bool HasInterSubmapConstraint(const PoseGraph& pose_graph) {
@@ -107,9 +118,10 @@ bool HasInterSubmapConstraint(const PoseGraph& pose_graph) {
 
 // What the reason of a refusal lacks: what is the matter with the map.
 std::string ExplainRefusal(const Localization& result, const DescribedMap& map,
-                           const double min_area) {
+                           const double min_area,
+                           const double min_common_area) {
   if (result.verdict == LocalizationVerdict::kNothingAlike) {
-    return ExplainBareMap(map, min_area);
+    return ExplainBareMap(map, min_area, min_common_area);
   }
   if (result.verdict == LocalizationVerdict::kAmbiguous &&
       !HasInterSubmapConstraint(map.state.pose_graph)) {
@@ -174,8 +186,9 @@ Localization LocalizeIn(const LocalizationOptions& options,
         return recognition.Add(queries, on_progress);
       },
       executor, on_stage);
-  result.reason +=
-      ExplainRefusal(result, map, options.placement.min_observed_area);
+  result.reason += ExplainRefusal(
+      result, map, options.placement.min_observed_area,
+      stages.recognition.match.verification.judgement.min_overlap_area);
   if (result.T_map_query) {
     std::vector<PairPose> agreeing;
     for (const size_t vote : result.placements.front().votes) {

@@ -101,6 +101,25 @@ TEST_F(LocalizeInTest, SaysWhatIsTheMatterWithAMap) {
               HasSubstr("the map shows too little: 0 m2, 20 are needed"));
 }
 
+TEST_F(LocalizeInTest, SaysThatSubmapsShowTooLittle) {
+  DescribedMap tiny;
+  tiny.state.submaps.insert(*elsewhere_->state.submaps.begin());
+  // Of a room of 2 m by 3 m: together more than a map needs.
+  for (int index = 0; index < 5; ++index) {
+    const SubmapId id{0, index};
+    std::optional<Place> place = DescribePlace(
+        PlaceOptions(), id,
+        testing::SeeFrom(testing::BareRoom(3., 2.), {}, {{0., 0.}}));
+    ASSERT_TRUE(place.has_value());
+    tiny.places.emplace(id, *std::move(place));
+    tiny.state.pose_graph.submap_poses[id] = Rigid2();
+    tiny.odometry[id] = OdometryPose();
+  }
+  const std::string reason = Find(tiny, *evening_).reason;
+  EXPECT_THAT(reason, HasSubstr("no submap of the map shows more than"));
+  EXPECT_THAT(reason, HasSubstr("two must have 10 in common"));
+}
+
 TEST_F(LocalizeInTest, MapsThatDoNotDriftAreLaidWithinCentimetres) {
   const FloorPlan plan = testing::MakeSmallOffice(1);
   const DriftOptions none{0., 0., 0., 0., 0., 0.};
