@@ -243,9 +243,11 @@ class Forger {
             random_.Uniform(kMinSlide, kMaxSlide));
       return guesses;
     }
-    for (double d = kMinSlide; d <= kMaxSlide; d += kSlideStep) {
-      slide(d);
-      slide(-d);
+    constexpr int kNumSteps =
+        static_cast<int>((kMaxSlide - kMinSlide) / kSlideStep);
+    for (int k = 0; k <= kNumSteps; ++k) {
+      slide(kMinSlide + k * kSlideStep);
+      slide(-(kMinSlide + k * kSlideStep));
     }
     return guesses;
   }

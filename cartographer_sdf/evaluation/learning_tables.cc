@@ -21,15 +21,16 @@ std::string Ids(const SubmapId& reference, const SubmapId& query) {
                       query.trajectory, ",", query.index);
 }
 
-template <size_t n>
-std::string Header(const std::array<const char*, n>& term_names) {
+template <size_t kSize>
+std::string Header(const std::array<const char*, kSize>& term_names) {
   return absl::StrCat(kIdColumns, ",score,", absl::StrJoin(term_names, ","),
                       "\n");
 }
 
-template <size_t n>
+template <size_t kSize>
 void AppendRow(const PairPose& pair, const double score,
-               const std::array<double, n>& terms, std::string* const content) {
+               const std::array<double, kSize>& terms,
+               std::string* const content) {
   absl::StrAppendFormat(content, "%s,%.9g", Ids(pair.reference, pair.query),
                         score);
   for (const double term : terms) absl::StrAppendFormat(content, ",%.9g", term);

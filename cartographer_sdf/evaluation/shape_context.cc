@@ -114,8 +114,8 @@ std::optional<Eigen::VectorXf> Describe(const ShapeContextOptions& options,
                                         const Eigen::Vector2d& centre,
                                         const double orientation) {
   const int num_angular = options.num_angular_bins;
-  Eigen::VectorXd histogram =
-      Eigen::VectorXd::Zero(options.num_radial_bins * num_angular);
+  Eigen::VectorXd histogram = Eigen::VectorXd::Zero(Eigen::Index{num_angular} *
+                                                    options.num_radial_bins);
   raster.ForEachNear(centre, options.radius_meters, [&](const int k) {
     const Eigen::Vector2d d = cloud[k] - centre;
     const double octaves =
@@ -238,7 +238,7 @@ FeatureSet DescribeByShapeContexts(const CloudPlaceOptions& options,
     descriptors.push_back(*std::move(description));
   }
   set.descriptors.resize(
-      descriptor.num_radial_bins * descriptor.num_angular_bins,
+      Eigen::Index{descriptor.num_radial_bins} * descriptor.num_angular_bins,
       static_cast<Eigen::Index>(descriptors.size()));
   for (size_t k = 0; k < descriptors.size(); ++k) {
     set.descriptors.col(static_cast<Eigen::Index>(k)) = descriptors[k];

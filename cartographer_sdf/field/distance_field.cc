@@ -23,7 +23,7 @@ CellGeometry PadGeometry(const CellGeometry& geometry, const int margin) {
   return padded;
 }
 
-BoolArray PadWithFalse(const BoolArray& cells, const int margin) {
+BoolArray PadWithFalse(const BoolArray& cells, const Eigen::Index margin) {
   BoolArray padded = BoolArray::Constant(cells.rows() + 2 * margin,
                                          cells.cols() + 2 * margin, false);
   padded.block(margin, margin, cells.rows(), cells.cols()) = cells;
@@ -41,7 +41,8 @@ const bool* NextTrue(const bool* const begin, const bool* const end) {
 // The cells whose probability shows an obstacle, with `margin` more on each
 // side.
 BoolArray PaddedObstacles(const FieldOptions& options,
-                          const OccupancyGrid& grid, const int margin) {
+                          const OccupancyGrid& grid,
+                          const Eigen::Index margin) {
   BoolArray occupied = BoolArray::Constant(
       grid.known.rows() + 2 * margin, grid.known.cols() + 2 * margin, false);
   const float threshold = static_cast<float>(options.occupied_probability);

@@ -3,9 +3,8 @@
 
 #include "cartographer_sdf/live/client_guard.h"
 
-#include <stdlib.h>
-
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>

@@ -56,8 +56,8 @@ void RegisterOutcomes(metrics::FamilyFactory* const family_factory) {
 }  // namespace
 
 LiveMetrics& TheMetrics() {
-  static LiveMetrics* const instance = new LiveMetrics;
-  return *instance;
+  static LiveMetrics* const kInstance = new LiveMetrics;
+  return *kInstance;
 }
 
 void RegisterMetrics(metrics::FamilyFactory* const family_factory) {

@@ -135,7 +135,7 @@ class Run {
         [this](const int, const Time time, const transform::Rigid3d& local_pose,
                sensor::RangeData,
                const std::unique_ptr<
-                   const mapping::TrajectoryBuilderInterface::InsertionResult>
+                   const mapping::TrajectoryBuilderInterface::InsertionResult>&
                    insertion) { Inserted(time, local_pose, insertion.get()); });
     const std::vector<LaserScan>& scans = recording_.scans;
     for (size_t i = 0; i < scans.size(); ++i) {

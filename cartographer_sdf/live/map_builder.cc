@@ -197,7 +197,7 @@ class SearchingMapBuilder : public LiveMapBuilder {
     auto callback =
         [searcher = searcher_, forward = std::move(local_slam_result_callback)](
             const int trajectory_id, const cartographer::common::Time time,
-            const transform::Rigid3d local_pose,
+            const transform::Rigid3d& local_pose,
             sensor::RangeData range_data_in_local,
             std::unique_ptr<
                 const mapping::TrajectoryBuilderInterface::InsertionResult>

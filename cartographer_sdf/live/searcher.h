@@ -243,7 +243,7 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                                       std::map<SubmapId, Place>* places)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void RememberLoaded(const std::map<int, int>& trajectory_ids,
-                      std::map<SubmapId, Place> places)
+                      std::map<SubmapId, Place>&& places)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void QueryLocalization(int trajectory_id) ABSL_LOCKS_EXCLUDED(mutex_);
   // The scans that a query starts with; empty if none is due.

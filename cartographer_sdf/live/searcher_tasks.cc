@@ -285,7 +285,7 @@ std::optional<bool> Searcher::DescribeMissing(
 }
 
 void Searcher::RememberLoaded(const std::map<int, int>& trajectory_ids,
-                              std::map<SubmapId, Place> places) {
+                              std::map<SubmapId, Place>&& places) {
   size_t num_places = 0;
   for (auto& [id_of_file, place] : places) {
     const auto trajectory_id = trajectory_ids.find(id_of_file.trajectory);

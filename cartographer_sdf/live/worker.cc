@@ -3,9 +3,9 @@
 
 #include "cartographer_sdf/live/worker.h"
 
-#include <time.h>
 #include <unistd.h>
 
+#include <ctime>
 #include <utility>
 
 #include "glog/logging.h"

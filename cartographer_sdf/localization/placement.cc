@@ -248,21 +248,21 @@ std::string Validate(const PlacementOptions& options) {
 std::vector<Placement> FindPlacements(const PlacementOptions& options,
                                       const ConsistencyOptions& consistency,
                                       const MapPair& maps,
-                                      const std::vector<PairPose>& closures) {
+                                      const std::vector<PairPose>& votes) {
   CHECK_EQ(Validate(options), "");
-  const VerdictTable votes(closures, [&](const PairPose& a, const PairPose& b) {
+  const VerdictTable verdicts(votes, [&](const PairPose& a, const PairPose& b) {
     return Relate(options, consistency, maps, a, b);
   });
   std::vector<Placement> placements;
-  for (std::vector<size_t>& group : GroupVotes(votes)) {
+  for (std::vector<size_t>& group : GroupVotes(verdicts)) {
     // In the order of ids, so that sums round the same whatever the input
     // order.
     std::sort(group.begin(), group.end(), [&](const size_t a, const size_t b) {
-      return IsBeforeByIds(closures[a], closures[b]);
+      return IsBeforeByIds(votes[a], votes[b]);
     });
     Placement placement;
-    placement.T_map_query = FitVotes(maps, closures, group);
-    placement.score = ScoreOf(options, maps, closures, group);
+    placement.T_map_query = FitVotes(maps, votes, group);
+    placement.score = ScoreOf(options, maps, votes, group);
     placement.votes = std::move(group);
     placements.push_back(std::move(placement));
   }
@@ -271,7 +271,7 @@ std::vector<Placement> FindPlacements(const PlacementOptions& options,
       [](const Placement& a, const Placement& b) { return a.score > b.score; });
   for (size_t k = 1; k < placements.size(); ++k) {
     placements[k].is_rival =
-        SupportBetween(votes, placements[k].votes, placements[0].votes) < 0.;
+        SupportBetween(verdicts, placements[k].votes, placements[0].votes) < 0.;
   }
   return placements;
 }

@@ -155,13 +155,13 @@ Viewpoints MakeViewpoints(const ViewpointOptions& options, const RayMap& map,
     const double angle = 2. * M_PI * (k + 0.5) / kNumDirections;
     directions.emplace_back(std::cos(angle), std::sin(angle));
   }
-  const size_t size = 2 * kNumDirections * viewpoints.positions.size();
+  const size_t size = kPanoramaSize * viewpoints.positions.size();
   viewpoints.ranges.resize(size);
   viewpoints.masks.resize(size);
   for (size_t n = 0; n < viewpoints.positions.size(); ++n) {
     TakePanorama(map, directions, viewpoints.positions[n],
-                 viewpoints.ranges.data() + 2 * kNumDirections * n,
-                 viewpoints.masks.data() + 2 * kNumDirections * n);
+                 viewpoints.ranges.data() + kPanoramaSize * n,
+                 viewpoints.masks.data() + kPanoramaSize * n);
   }
   return viewpoints;
 }

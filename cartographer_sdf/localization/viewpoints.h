@@ -29,6 +29,8 @@ struct ViewpointOptions {
 
 // Directions of a panorama, the first along the x axis of the grid.
 constexpr int kNumDirections = 128;
+// Ranges of a panorama as they are kept: twice in a row.
+constexpr size_t kPanoramaSize = size_t{2} * kNumDirections;
 // Ranges of a panorama are kept in this unit [m], up to 255 of it.
 constexpr double kPanoramaUnit = 0.1;
 
@@ -42,10 +44,10 @@ struct Viewpoints {
   std::vector<uint8_t> masks;
 
   [[nodiscard]] const uint8_t* RangesOf(const size_t viewpoint) const {
-    return ranges.data() + 2 * kNumDirections * viewpoint;
+    return ranges.data() + kPanoramaSize * viewpoint;
   }
   [[nodiscard]] const uint8_t* MasksOf(const size_t viewpoint) const {
-    return masks.data() + 2 * kNumDirections * viewpoint;
+    return masks.data() + kPanoramaSize * viewpoint;
   }
 };
 

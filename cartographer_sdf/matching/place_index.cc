@@ -233,7 +233,7 @@ bool PlaceIndex::Contains(const SubmapId& id) const {
 
 size_t PlaceIndex::MemoryUse() const {
   size_t bytes =
-      buckets_.capacity() * sizeof(buckets_[0]) +
+      buckets_.capacity() * sizeof(std::vector<Entry>) +
       slots_.capacity() * sizeof(Slot) +
       // A node of a map has three pointers and a colour beside.
       slots_by_id_.size() * (sizeof(std::pair<SubmapId, uint32_t>) + 32);

@@ -193,7 +193,7 @@ std::vector<SubmapId> SubmapsAround(const TrajectoryPlaces& map,
   std::vector<SubmapId> around;
   for (int step = -num_steps; step <= num_steps; ++step) {
     // Files may contain any index.
-    const int64_t index = static_cast<int64_t>(id.index) + step * index_step;
+    const int64_t index = id.index + int64_t{step} * index_step;
     if (index < 0 || index > std::numeric_limits<int>::max()) continue;
     const SubmapId other{id.trajectory, static_cast<int>(index)};
     if (map.places->count(other) == 0 ||

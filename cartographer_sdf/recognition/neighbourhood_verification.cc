@@ -246,7 +246,7 @@ class NeighbourhoodVerifier {
  private:
   // Those of the tasks that leave a choice and that the budget affords.
   [[nodiscard]] std::vector<Task> Affordable(
-      std::map<IdPair, Task> tasks,
+      std::map<IdPair, Task>&& tasks,
       const std::map<IdPair, Match>& matches) const {
     std::vector<Task> result;
     for (auto& [ids, task] : tasks) {

@@ -170,9 +170,12 @@ void DrawSurfaceColumn(const DistanceField& field, const ObliqueView& view,
   const double step = std::min(0.5 * field.geometry.resolution,
                                0.5 / sheet->frame.pixels_per_meter);
   const double right = sheet->frame.CentreOf(x, 0).x();
+  const auto num_steps =
+      static_cast<int64_t>(std::floor((depths.second - depths.first) / step));
   int horizon = sheet->picture.height();
   bool follows_observed = false;
-  for (double depth = depths.first; depth <= depths.second; depth += step) {
+  for (int64_t k = 0; k <= num_steps; ++k) {
+    const double depth = depths.first + static_cast<double>(k) * step;
     const Eigen::Vector2d p_grid = view.ToGrid({right, depth});
     const std::optional<double> distance = ObservedDistance(field, p_grid);
     if (!distance || !view.plane.contains(p_grid)) {

@@ -239,8 +239,9 @@ void MapPainter::AddSubmap(const OccupancyGrid& grid,
       const float excess = grid.probability(i, j) - 0.5f;
       for (int sample = 0; sample < kSamplesPerCell * kSamplesPerCell;
            ++sample) {
+        const int row = sample / kSamplesPerCell;
         const double di = (sample % kSamplesPerCell + 0.5) / kSamplesPerCell;
-        const double dj = (sample / kSamplesPerCell + 0.5) / kSamplesPerCell;
+        const double dj = (row + 0.5) / kSamplesPerCell;
         const Eigen::Vector2d pixel =
             origin + (i + di - 0.5) * along_i + (j + dj - 0.5) * along_j;
         if (!((pixel.array() >= 0.) && (pixel.array() < size)).all()) continue;

@@ -38,7 +38,7 @@ std::string FormatDuration(const double seconds) {
     const int64_t total = std::llround(seconds);
     return absl::StrFormat("%d min %02d s", total / 60, total % 60);
   }
-  if (minutes < 48 * 60) {
+  if (minutes < int64_t{48} * 60) {
     return absl::StrFormat("%d h %02d min", minutes / 60, minutes % 60);
   }
   return absl::StrFormat("%.1f days", seconds / 86400.);

@@ -13,7 +13,7 @@ namespace cartographer_sdf {
 namespace {
 
 const std::vector<CsvColumn>& Columns() {
-  static const auto* const columns =
+  static const auto* const kColumns =
       new std::vector<CsvColumn>{{"reference_trajectory", CsvType::kInteger},
                                  {"reference_index", CsvType::kInteger},
                                  {"query_trajectory", CsvType::kInteger},
@@ -28,7 +28,7 @@ const std::vector<CsvColumn>& Columns() {
                                  {"overlap", CsvType::kNumber},
                                  {"hit_ratio", CsvType::kNumber},
                                  {"contradiction_ratio", CsvType::kNumber}};
-  return *columns;
+  return *kColumns;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -98,9 +99,10 @@ void Picture::BlendPixel(const int x, const int y, const Color& color) {
   if (x < 0 || y < 0 || x >= width() || y >= height()) return;
   cairo_surface_t* const surface = cairo_get_target(context_.get());
   cairo_surface_flush(surface);
-  unsigned char* const address = cairo_image_surface_get_data(surface) +
-                                 y * cairo_image_surface_get_stride(surface) +
-                                 4 * x;
+  // A picture of 30,000 pixels along each side has more than 2 GB.
+  const ptrdiff_t stride = cairo_image_surface_get_stride(surface);
+  unsigned char* const address =
+      cairo_image_surface_get_data(surface) + stride * y + ptrdiff_t{4} * x;
   uint32_t pixel;
   std::memcpy(&pixel, address, sizeof(pixel));
   const Color old{((pixel >> 16) & 255) / 255., ((pixel >> 8) & 255) / 255.,

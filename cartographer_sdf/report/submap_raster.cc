@@ -97,14 +97,14 @@ SubmapRaster RasterizeSubmap(const OccupancyGrid& grid, const int max_pixels) {
   raster.T_submap_raster =
       grid.geometry.T_submap_grid *
       Rigid2(grid.geometry.resolution * known.min().cast<double>(), 0.);
-  raster.cells.assign(
-      static_cast<size_t>(raster.width) * static_cast<size_t>(raster.height),
-      CellClass::kUnknown);
+  const auto width = static_cast<size_t>(raster.width);
+  raster.cells.assign(width * static_cast<size_t>(raster.height),
+                      CellClass::kUnknown);
   for (int j = known.min().y(); j <= known.max().y(); ++j) {
     for (int i = known.min().x(); i <= known.max().x(); ++i) {
-      const int x = (i - known.min().x()) / factor;
-      const int y = (j - known.min().y()) / factor;
-      CellClass& cell = raster.cells[static_cast<size_t>(y * raster.width + x)];
+      const auto x = static_cast<size_t>((i - known.min().x()) / factor);
+      const auto y = static_cast<size_t>((j - known.min().y()) / factor);
+      CellClass& cell = raster.cells[y * width + x];
       cell = std::max(cell, ClassOf(grid, i, j));
     }
   }

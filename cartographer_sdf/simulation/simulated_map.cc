@@ -103,7 +103,8 @@ absl::StatusOr<std::vector<size_t>> ChooseNodes(
         absl::StrCat("the drive has ", kept.size(), " nodes, but a submap is ",
                      "finished only after ", 2 * num_range_data));
   }
-  kept.resize((num_submaps + 1) * num_range_data);
+  kept.resize(static_cast<size_t>(num_submaps + 1) *
+              static_cast<size_t>(num_range_data));
   return kept;
 }
 

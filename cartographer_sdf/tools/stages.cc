@@ -74,8 +74,9 @@ absl::Status ReadAndPrepare(const PoseGraph& pose_graph,
   absl::StatusOr<RecordWriter> map =
       PrepareMap(SourceOfFlags(FLAGS_input), FLAGS_output, pose_graph,
                  {on_submap, {}}, progress->Begin("write"));
-  if (map.ok()) output->emplace(*std::move(map));
-  return map.status();
+  if (!map.ok()) return map.status();
+  output->emplace(*std::move(map));
+  return absl::OkStatus();
 }
 
 }  // namespace

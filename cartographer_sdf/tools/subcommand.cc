@@ -197,9 +197,9 @@ std::string OneLine(std::string text) {
 }
 
 const std::vector<SubcommandFlag>& CommonFlags() {
-  static const auto* const flags = new std::vector<SubcommandFlag>{
+  static const auto* const kFlags = new std::vector<SubcommandFlag>{
       {"result", FileUse::kWriteText}, "fail_on"};
-  return *flags;
+  return *kFlags;
 }
 
 std::vector<SubcommandFlag> Subcommand::AllFlags() const {

@@ -108,14 +108,14 @@ class Tiles {
 
 // Certainties as fractions.
 const std::array<double, 256>& Fractions() {
-  static const std::array<double, 256> fractions = [] {
+  static const std::array<double, 256> kFractions = [] {
     std::array<double, 256> result = {};
     for (size_t k = 0; k < result.size(); ++k) {
       result[k] = static_cast<double>(k) / 255.;
     }
     return result;
   }();
-  return fractions;
+  return kFractions;
 }
 
 // Adds up the points and calls visit(point, weight, is_hit) for each in the

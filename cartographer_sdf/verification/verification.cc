@@ -285,14 +285,14 @@ std::optional<VerifiedPose> VerifyHypotheses(
                          PairVerifier::RivalSearch::kWhereLikely);
 }
 
-std::vector<VerifiedPose> VerifyPoses(const VerificationOptions& options,
-                                      const SurfaceModel& reference,
-                                      const SurfaceModel& query,
-                                      const std::vector<Rigid2>& poses,
-                                      const std::vector<Rigid2>& hypotheses) {
+std::vector<VerifiedPose> VerifyPoses(
+    const VerificationOptions& options, const SurfaceModel& reference,
+    const SurfaceModel& query, const std::vector<Rigid2>& T_reference_query,
+    const std::vector<Rigid2>& hypotheses_T_reference_query) {
   const PairVerifier verifier(options, reference, query);
-  std::vector<Candidate> candidates = verifier.Refine(poses);
-  for (Candidate& candidate : verifier.RefineBest(hypotheses)) {
+  std::vector<Candidate> candidates = verifier.Refine(T_reference_query);
+  for (Candidate& candidate :
+       verifier.RefineBest(hypotheses_T_reference_query)) {
     candidates.push_back(std::move(candidate));
   }
   PairVerifier::SortByScore(&candidates);
