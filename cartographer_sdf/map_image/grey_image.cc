@@ -133,7 +133,8 @@ GreyImage CopyPixels(cairo_surface_t* const surface) {
   for (int line = 0; line < height; ++line) {
     for (int x = 0; x < width; ++x) {
       uint32_t pixel = 0;
-      std::memcpy(&pixel, data + int64_t{line} * stride + 4 * x, sizeof(pixel));
+      std::memcpy(&pixel, data + int64_t{line} * stride + int64_t{4} * x,
+                  sizeof(pixel));
       const uint32_t sum =
           (pixel >> 16 & 255) + (pixel >> 8 & 255) + (pixel & 255);
       image.brightness(x, height - 1 - line) = static_cast<float>(sum) / 765.f;

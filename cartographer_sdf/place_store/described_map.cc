@@ -56,7 +56,9 @@ std::map<SubmapId, Place> DescribePlaces(
   });
   std::map<SubmapId, Place> places;
   for (std::optional<Place>& place : described) {
-    if (place) places.emplace(place->id, *std::move(place));
+    if (!place) continue;
+    const SubmapId id = place->id;
+    places.emplace(id, *std::move(place));
   }
   return places;
 }

@@ -295,7 +295,7 @@ std::string DecodeFeatures(const ProtoPlace& proto, FeatureSet* const set) {
   }
   for (int k = 0; k < count; ++k) {
     const double* const numbers =
-        proto.features().data() + kNumbersPerFeature * k;
+        proto.features().data() + int64_t{kNumbersPerFeature} * k;
     const int kind = static_cast<uint8_t>(proto.kinds()[k]);
     if (kind >= kNumKeypointKinds || !IsCoordinate(numbers[0]) ||
         !IsCoordinate(numbers[1]) || !IsCoordinate(numbers[2]) ||
