@@ -55,8 +55,8 @@ class QueryPartsTest : public ::testing::Test {
                           FindPlacements(options_, consistency_, maps, votes_));
   }
 
-  const PlacementOptions options_;
-  const ConsistencyOptions consistency_;
+  const PlacementOptions options_{};
+  const ConsistencyOptions consistency_{};
   const MapLayout map_ = StraightDrive(kNumPlaces);
   const MapLayout query_ = StraightDrive(kNumPlaces);
   std::vector<PairPose> votes_;

@@ -32,7 +32,6 @@ Feature MakeFeature(const double x, const double y, const double clearance,
 
 // Of one pair, in the middle of all bins.
 FeatureSet OnePair() {
-  KeypointPairOptions options;
   FeatureSet set;
   const double bin = 2. * M_PI / 14.;  // nearest to orientation_bin
   set.features = {MakeFeature(0., 0., 0.5, 0.5 * bin),

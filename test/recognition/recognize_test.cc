@@ -95,8 +95,10 @@ TEST(RecognizeTest, SkipsPairsThatShareScans) {
     EXPECT_LT(some.size(), all.size());
     for (const Pair& pair : some) EXPECT_THAT(all, ::testing::Contains(pair));
     for (const auto& [id, place] : places) {
+      // In C++17 a lambda captures no structured binding.
+      const SubmapId of_place = id;
       EXPECT_TRUE(std::any_of(some.begin(), some.end(), [&](const Pair& pair) {
-        return pair.first == id || pair.second == id;
+        return pair.first == of_place || pair.second == of_place;
       })) << id;
     }
   }
