@@ -155,8 +155,8 @@ int Include(lua_State* const lua) {
 }
 
 // Removes all other keys from the table on top of the stack, and pops it.
-template <size_t N>
-void KeepOnly(lua_State* const lua, const std::string_view (&names)[N]) {
+template <size_t kSize>
+void KeepOnly(lua_State* const lua, const std::string_view (&names)[kSize]) {
   lua_pushnil(lua);
   while (lua_next(lua, -2) != 0) {
     lua_pop(lua, 1);
