@@ -230,6 +230,9 @@ class MapJudge {
     audit_->dropped = drop_list_.value_or(doubtful);
     if (!audit_->dropped.empty()) {
       Mend(judging);
+    } else if (audit_->state.num_dropped_odometry_records > 0) {
+      // It has shaped the map, and Cartographer would move it without.
+      OptimizeWith(audit_->optimization);
     } else {
       audit_->pose_graph = audit_->state.pose_graph;
       MeasureErrors(audit_->pose_graph, audit_->pose_graph, constraints);
@@ -290,7 +293,7 @@ void CompareQuality(const RecognitionOptions& recognition,
                              executor);
   };
   audit->quality_before = measure(audit->state.pose_graph);
-  if (audit->dropped.empty()) {
+  if (audit->optimizations.empty()) {
     audit->quality_after = audit->quality_before;
     return;
   }
@@ -300,8 +303,9 @@ void CompareQuality(const RecognitionOptions& recognition,
   if (!has_drop_list &&
       after > before + std::max(kMaxIncrease, kMaxRelativeIncrease * before)) {
     audit->refusal = absl::StrFormat(
-        "without the doubtful constraints more of the walls would stand in "
-        "free space: %.1f %%, now %.1f %%",
+        "without %s more of the walls would stand in free space: %.1f %%, now "
+        "%.1f %%",
+        audit->dropped.empty() ? "odometry" : "the doubtful constraints",
         100. * after, 100. * before);
   }
 }

@@ -10,6 +10,25 @@
 
 namespace cartographer_sdf {
 
+namespace {
+
+// If odometry was dropped and no closure was found. Odometry has shaped the
+// map, and Cartographer would move it without.
+void OptimizeWithoutOdometry(const std::set<int>& frozen_trajectories,
+                             StageClock* const clock,
+                             LoopClosingResult* const result) {
+  ClosedGraph& closed = result->closed;
+  if (!closed.optimizations.empty() ||
+      result->state.num_dropped_odometry_records == 0) {
+    return;
+  }
+  clock->Begin("optimise without odometry");
+  closed.optimizations.push_back(
+      Optimize(result->optimization, frozen_trajectories, &closed.pose_graph));
+}
+
+}  // namespace
+
 std::string Validate(const LoopClosingOptions& options) {
   for (const std::string& error :
        {Validate(options.place), Validate(options.recognition),
@@ -17,6 +36,12 @@ std::string Validate(const LoopClosingOptions& options) {
     if (!error.empty()) return error;
   }
   return "";
+}
+
+std::string DescribeWithoutClosures(const LoopClosingResult& result) {
+  return result.closed.optimizations.empty()
+             ? "the map is unchanged"
+             : "the map was optimised without its odometry";
 }
 
 absl::StatusOr<LoopClosingResult> CloseLoops(
@@ -51,8 +76,9 @@ absl::StatusOr<LoopClosingResult> CloseLoops(
                  {&map->state.pose_graph, &map->odometry, &map->places,
                   &map->point_clouds},
                  std::move(matches), frozen_trajectories, executor, &clock);
-  clock.End();
   result.state = std::move(map->state);
+  OptimizeWithoutOdometry(frozen_trajectories, &clock, &result);
+  clock.End();
   return result;
 }
 

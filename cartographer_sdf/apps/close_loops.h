@@ -43,6 +43,13 @@ struct LoopClosingResult {
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
+// "the map is unchanged", or that it was optimised without its odometry.
+[[nodiscard]] std::string DescribeWithoutClosures(
+    const LoopClosingResult& result);
+
+// A map whose odometry is dropped is optimised even if no closure is found:
+// odometry has shaped it, and Cartographer would move it without.
+//
 // Fails if the file cannot be read or lacks one of the frozen trajectories,
 // which stay fixed. The recognition's method must be kSdf. `describe`, if
 // given, describes the map in place of DescribeMap.

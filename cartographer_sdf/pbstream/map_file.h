@@ -83,8 +83,9 @@ struct MapState {
   // Without a record of their own, whatever was made of them.
   int num_unrecorded_submaps = 0;
   int num_unrecorded_nodes = 0;
-  // How it was read; without odometry, none is counted either.
+  // How it was read; without odometry, its records are not among num_records.
   OdometryRecords odometry_records = OdometryRecords::kKeep;
+  int num_dropped_odometry_records = 0;
 };
 
 // Called for each submap with a grid, to keep or to read. The grid is in the

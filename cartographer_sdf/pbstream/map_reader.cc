@@ -94,6 +94,7 @@ absl::StatusOr<bool> MapReader::Next() {
     if (!has_record.ok() || !*has_record) return has_record;
     if (state_.odometry_records == OdometryRecords::kDrop &&
         data_.has_odometry_data()) {
+      ++state_.num_dropped_odometry_records;
       continue;
     }
     ++state_.num_records[KindName(data_)];

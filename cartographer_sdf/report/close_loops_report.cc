@@ -61,11 +61,12 @@ void JudgeClosing(const LoopClosingResult& result,
   } else if (num_known > 0) {
     inspection->verdict = absl::StrFormat(
         "Nothing to close: the map has constraints already that say the same "
-        "as %s. It is unchanged.",
-        Counted(num_known, "closure"));
+        "as %s; %s.",
+        Counted(num_known, "closure"), DescribeWithoutClosures(result));
   } else {
     inspection->tone = Tone::kCaution;
-    inspection->verdict = "No loop closure was found; the map is unchanged.";
+    inspection->verdict =
+        "No loop closure was found; " + DescribeWithoutClosures(result) + ".";
   }
   if (num_outliers > 0) {
     inspection->tone = Tone::kCaution;

@@ -202,7 +202,8 @@ Subcommand AuditSubcommand() {
       "3.\n\n"
       "With --drop, a list says which constraints are dropped, and no others: "
       "that of doubtful ones which the report saves, or part of it.\n\n"
-      "A map without doubtful constraints is copied, byte for byte.",
+      "A map without doubtful constraints is copied, byte for byte, unless "
+      "--drop_odometry leaves its odometry out.",
       {{"input", FileUse::kRead}},
       {{"output",
         FileUse::kCopyMap,

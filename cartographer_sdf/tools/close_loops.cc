@@ -50,8 +50,8 @@ void RecordClosing(const LoopClosingResult& result, RunRecord* const record) {
   RecordConvergence(result.closed.optimizations, record);
   record->answer["closures"] = Json(statuses);
   if (num_closures == 0) {
-    record->End(Outcome::kNothing,
-                "no new loop closure was found; the map is unchanged");
+    record->End(Outcome::kNothing, "no new loop closure was found; " +
+                                       DescribeWithoutClosures(result));
   }
 }
 
@@ -73,7 +73,8 @@ void PrintSummary(const LoopClosingResult& result) {
               << "; where closures ask for it, the map gives way.\n";
   }
   if (result.closed.closures.empty()) {
-    std::cout << "No loop closure was found; the map is unchanged.\n";
+    std::cout << "No loop closure was found; "
+              << DescribeWithoutClosures(result) << ".\n";
   }
   PrintStages(result.stage_seconds);
   PrintConvergence(result.closed.optimizations);

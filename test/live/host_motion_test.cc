@@ -37,10 +37,11 @@ class HostMotionTest : public ::testing::Test {
   static std::string OpenMap() { return directory_->File("open.pbstream"); }
 
   // Closes its loops and writes it.
-  static LoopClosingResult Close(const MapSource& source,
-                                 const std::string& output) {
+  static LoopClosingResult Close(
+      const MapSource& source, const std::string& output,
+      const LoopClosingOptions& options = LoopClosingOptions()) {
     absl::StatusOr<LoopClosingResult> result =
-        CloseLoops(LoopClosingOptions(), source, {}, MakeExecutor(2));
+        CloseLoops(options, source, {}, MakeExecutor(2));
     CHECK(result.ok()) << result.status();
     const absl::Status written =
         WriteMap(source, output, result->closed.pose_graph);
@@ -92,6 +93,33 @@ TEST_F(HostMotionTest, WithoutOdometryAMapKeepsItsShape) {
   const std::string output = directory_->File("without.pbstream");
   const LoopClosingResult result = Close(source, output);
   EXPECT_FALSE(Predict(result).has_value());
+  EXPECT_LT(MotionByStock(output, result.closed.pose_graph), 0.002);
+}
+
+// Odometry has shaped the map, and no closure is new.
+TEST_F(HostMotionTest, WithoutOdometryAMapKeepsItsShapeThoughNothingIsClosed) {
+  LoopClosingOptions trusting;
+  trusting.closing.infer_odometry_weights = false;
+  const std::string shaped = directory_->File("shaped.pbstream");
+  Close(OpenMap(), shaped, trusting);
+  LoopClosingOptions strict;
+  strict.recognition.match.verification.judgement.min_score = 1e6;
+  const MapSource source(shaped, MissingRecords::kRefuse,
+                         OdometryRecords::kDrop);
+  const std::string output = directory_->File("settled.pbstream");
+  const LoopClosingResult result = Close(source, output, strict);
+  EXPECT_TRUE(result.closed.closures.empty());
+  EXPECT_EQ(DescribeWithoutClosures(result),
+            "the map was optimised without its odometry");
+  double motion = 0.;
+  for (const auto& [id, node] : result.state.pose_graph.nodes) {
+    motion = std::max(
+        motion,
+        (result.closed.pose_graph.nodes.at(id).T_map_node.translation() -
+         node.T_map_node.translation())
+            .norm());
+  }
+  EXPECT_GT(motion, 0.1);
   EXPECT_LT(MotionByStock(output, result.closed.pose_graph), 0.002);
 }
 

@@ -148,6 +148,9 @@ TEST_F(MapFileTest, LeavesOutOdometryAsIfThereWereNone) {
   ASSERT_TRUE(state.ok()) << state.status();
   const MapState with_odometry = Read(input_);
   EXPECT_EQ(state->num_records.count("odometry_data"), 0u);
+  EXPECT_EQ(state->num_dropped_odometry_records,
+            with_odometry.num_records.at("odometry_data"));
+  EXPECT_EQ(with_odometry.num_dropped_odometry_records, 0);
   EXPECT_EQ(state->num_records.size() + 1, with_odometry.num_records.size());
   for (const auto& [id, node] : state->pose_graph.nodes) {
     EXPECT_FALSE(node.T_previous_node_by_odometry.has_value());

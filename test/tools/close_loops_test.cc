@@ -135,6 +135,46 @@ TEST_F(CloseLoopsTest, TellsWhetherCartographerWouldBendTheMap) {
   EXPECT_EQ(RunTestProgram({"audit", poor, "--drop_odometry"}).exit_code, 2);
 }
 
+TEST_F(CloseLoopsTest, DropsOdometryThatHasShapedAMap) {
+  const std::string poor = File("poor.pbstream");
+  DriftOptions drift;
+  drift.odometry_yaw_bias = 0.01;
+  drift.local_slam_fraction = 0.05;
+  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, poor,
+                           /*with_submaps=*/true, drift);
+  directory_->Write("trusting.lua",
+                    "include \"sdf_global_constraints.lua\"\n"
+                    "SDF_GLOBAL_CONSTRAINTS.loop_closing.closing."
+                    "infer_odometry_weights = false\n"
+                    "return SDF_GLOBAL_CONSTRAINTS\n");
+  const std::string shaped = File("shaped.pbstream");
+  const ProgramResult closed = RunTestProgram(
+      {"close_loops", poor, "-o", shaped, "--configuration_directory",
+       directory_->path(), "--configuration_basename", "trusting.lua"});
+  ASSERT_EQ(closed.exit_code, 0) << closed.error;
+  // All closures are in it already, and none of its constraints is doubtful.
+  for (const std::string subcommand : {"close_loops", "audit"}) {
+    const std::string output = File(subcommand + "_without.pbstream");
+    const ProgramResult without =
+        RunTestProgram({subcommand, shaped, "-o", output, "--drop_odometry"});
+    EXPECT_EQ(without.exit_code, 0) << without.error;
+    const auto before = ReadMap(shaped);
+    const auto after = ReadMap(output);
+    ASSERT_TRUE(before.ok() && after.ok()) << subcommand;
+    EXPECT_EQ(before->pose_graph.constraints.size(),
+              after->pose_graph.constraints.size())
+        << subcommand;
+    double motion = 0.;
+    for (const auto& [id, node] : before->pose_graph.nodes) {
+      motion = std::max(
+          motion, (after->pose_graph.nodes.at(id).T_map_node.translation() -
+                   node.T_map_node.translation())
+                      .norm());
+    }
+    EXPECT_GT(motion, 0.02) << subcommand;
+  }
+}
+
 TEST_F(CloseLoopsTest, TellsOfTornSubmaps) {
   const std::string slipped = File("slipped.pbstream");
   testing::WriteOffice(testing::Slip::kInSubmaps8And9, slipped);
