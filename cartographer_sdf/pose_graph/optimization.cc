@@ -218,8 +218,8 @@ std::optional<OdometryWeights> InferOdometryWeights(
     if (!step || IsSlip(options.min_slip_angle, *step)) continue;
     const Rigid2 optimized =
         std::prev(it)->second.T_map_node.Inverse() * it->second.T_map_node;
-    const Rigid2& local = step->by_local_slam;
-    const Rigid2& odometry = step->by_odometry;
+    const Rigid2& local = step->T_previous_node_by_local_slam;
+    const Rigid2& odometry = step->T_previous_node_by_odometry;
     const Eigen::Vector2d x = odometry.translation() - local.translation();
     const Eigen::Vector2d y = optimized.translation() - local.translation();
     translation.Add(x.x(), y.x());

@@ -12,8 +12,8 @@ namespace cartographer_sdf {
 namespace {
 
 double SlipAngle(const Step& step) {
-  return NormalizeAngle(step.by_local_slam.rotation() -
-                        step.by_odometry.rotation());
+  return NormalizeAngle(step.T_previous_node_by_local_slam.rotation() -
+                        step.T_previous_node_by_odometry.rotation());
 }
 
 }  // namespace

@@ -20,10 +20,10 @@
 
 namespace cartographer_sdf {
 
-// Motion between two consecutive nodes (previous node <- node).
+// Motion between two consecutive nodes of a trajectory.
 struct Step {
-  Rigid2 by_local_slam;
-  Rigid2 by_odometry;
+  Rigid2 T_previous_node_by_local_slam;
+  Rigid2 T_previous_node_by_odometry;
 };
 
 // Returns the step that ends at the node at `it`. None where the previous node

@@ -14,6 +14,7 @@
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "gtest/gtest.h"
 #include "test/live/host.h"
+#include "test/testing/node_motion.h"
 #include "test/testing/temporary_directory.h"
 #include "test/testing/two_offices.h"
 
@@ -111,15 +112,9 @@ TEST_F(HostMotionTest, WithoutOdometryAMapKeepsItsShapeThoughNothingIsClosed) {
   EXPECT_TRUE(result.closed.closures.empty());
   EXPECT_EQ(DescribeWithoutClosures(result),
             "the map was optimised without its odometry");
-  double motion = 0.;
-  for (const auto& [id, node] : result.state.pose_graph.nodes) {
-    motion = std::max(
-        motion,
-        (result.closed.pose_graph.nodes.at(id).T_map_node.translation() -
-         node.T_map_node.translation())
-            .norm());
-  }
-  EXPECT_GT(motion, 0.1);
+  EXPECT_GT(
+      testing::LargestMotion(result.state.pose_graph, result.closed.pose_graph),
+      0.1);
   EXPECT_LT(MotionByStock(output, result.closed.pose_graph), 0.002);
 }
 

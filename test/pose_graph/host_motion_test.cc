@@ -3,10 +3,10 @@
 
 #include "cartographer_sdf/pose_graph/host_motion.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "gtest/gtest.h"
+#include "test/testing/node_motion.h"
 #include "test/testing/synthetic_pose_graph.h"
 
 namespace cartographer_sdf::host_motion_test {
@@ -44,16 +44,6 @@ PoseGraph ClosedMap() {
   return pose_graph;
 }
 
-double LargestMotion(const PoseGraph& from, const PoseGraph& to) {
-  double largest = 0.;
-  for (const auto& [id, node] : from.nodes) {
-    largest = std::max(largest, (node.T_map_node.translation() -
-                                 to.nodes.at(id).T_map_node.translation())
-                                    .norm());
-  }
-  return largest;
-}
-
 TEST(PredictHostMotionTest, IsThatOfAnotherOptimisation) {
   const PoseGraph map = ClosedMap();
   const std::optional<HostMotion> motion =
@@ -65,7 +55,7 @@ TEST(PredictHostMotionTest, IsThatOfAnotherOptimisation) {
   Optimize(OptimizationOptions(), {}, &moved);
   // Turned by half of 0.4 rad, within loops of 200 m that closures hold.
   EXPECT_GT(motion->max_translation, 0.3);
-  EXPECT_EQ(motion->max_translation, LargestMotion(map, moved));
+  EXPECT_EQ(motion->max_translation, testing::LargestMotion(map, moved));
 }
 
 TEST(PredictHostMotionTest, TakesTheWeightsOfTrajectories) {

@@ -3,13 +3,14 @@
 
 #include "cartographer_sdf/pose_graph/slips.h"
 
-#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "cartographer_sdf/pose_graph/host_motion.h"
 #include "cartographer_sdf/pose_graph/optimization.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/node_motion.h"
 #include "test/testing/synthetic_pose_graph.h"
 
 namespace cartographer_sdf::slips_test {
@@ -37,9 +38,10 @@ testing::RoundTrip Drive(const double local_slip, const double wheel_slip,
   options.yaw_noise = 2e-4;
   testing::RoundTrip drive = testing::MakeRoundTrip(options);
   PoseGraph& graph = drive.open_loop;
-  const Rigid2 turn(0., 0., local_slip);
-  const Rigid2 pivot = *graph.nodes.at(kSlip).T_local_node;
-  const Rigid2 T_slipped_local = pivot * turn * pivot.Inverse();
+  const Rigid2 T_pivot_slipped(0., 0., local_slip);
+  const Rigid2 T_local_pivot = *graph.nodes.at(kSlip).T_local_node;
+  const Rigid2 T_slipped_local =
+      T_local_pivot * T_pivot_slipped * T_local_pivot.Inverse();
   testing::NormalNumbers normal(7);
   const Node* previous = nullptr;
   for (auto& [id, node] : graph.nodes) {
@@ -67,16 +69,6 @@ testing::RoundTrip Drive(const double local_slip, const double wheel_slip,
         graph.nodes.at(constraint.node).T_map_node;
   }
   return drive;
-}
-
-double LargestError(const PoseGraph& truth, const PoseGraph& graph) {
-  double largest = 0.;
-  for (const auto& [id, node] : graph.nodes) {
-    largest = std::max(largest, (node.T_map_node.translation() -
-                                 truth.nodes.at(id).T_map_node.translation())
-                                    .norm());
-  }
-  return largest;
 }
 
 OptimizationOptions Rigid() {
@@ -132,10 +124,10 @@ TEST(SlipsTest, TheMapGivesWay) {
   const testing::RoundTrip drive = Drive(kAngle, 0.);
   PoseGraph rigid = drive.open_loop;
   ASSERT_TRUE(Optimize(Rigid(), {}, &rigid).converged);
-  EXPECT_GT(LargestError(drive.truth, rigid), 0.5);
+  EXPECT_GT(testing::LargestMotion(rigid, drive.truth), 0.5);
   PoseGraph mended = drive.open_loop;
   ASSERT_TRUE(Optimize(GivingWay(), {}, &mended).converged);
-  EXPECT_LT(LargestError(drive.truth, mended), 0.15);
+  EXPECT_LT(testing::LargestMotion(mended, drive.truth), 0.15);
 }
 
 // Closures decide whether local SLAM or odometry is right.
@@ -144,7 +136,7 @@ TEST(SlipsTest, WheelsThatSlipBendNothing) {
   ASSERT_EQ(FindSlips(0.15, drive.open_loop).size(), 1u);
   PoseGraph graph = drive.open_loop;
   ASSERT_TRUE(Optimize(OptimizationOptions(), {}, &graph).converged);
-  EXPECT_LT(LargestError(drive.truth, graph), 0.15);
+  EXPECT_LT(testing::LargestMotion(graph, drive.truth), 0.15);
 }
 
 // Otherwise a map that is closed twice would trust odometry the second time.

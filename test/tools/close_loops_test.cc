@@ -19,6 +19,7 @@
 #include "cartographer_sdf/simulation/truth.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "test/testing/node_motion.h"
 #include "test/testing/open_counter.h"
 #include "test/testing/program.h"
 #include "test/testing/shared_data.h"
@@ -54,6 +55,16 @@ class CloseLoopsTest : public ::testing::Test {
     more.insert(more.begin(), {"close_loops", "--input", File("open.pbstream"),
                                "--output", File(output)});
     return RunTestProgram(more);
+  }
+  // Odometry turns twenty times as much as local SLAM lets pass.
+  static std::string WriteDriveWithPoorOdometry() {
+    DriftOptions drift;
+    drift.odometry_yaw_bias = 0.01;
+    drift.local_slam_fraction = 0.05;
+    const std::string path = File("poor.pbstream");
+    testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, path,
+                             /*with_submaps=*/true, drift);
+    return path;
   }
   static double MeanNodeError(const std::string& map) {
     const ProgramResult result =
@@ -109,12 +120,7 @@ TEST_F(CloseLoopsTest, StraightensASimulatedMap) {
 }
 
 TEST_F(CloseLoopsTest, TellsWhetherCartographerWouldBendTheMap) {
-  const std::string poor = File("poor.pbstream");
-  DriftOptions drift;
-  drift.odometry_yaw_bias = 0.01;
-  drift.local_slam_fraction = 0.05;
-  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, poor,
-                           /*with_submaps=*/true, drift);
+  const std::string poor = WriteDriveWithPoorOdometry();
   const std::vector<std::string> arguments = {
       "close_loops",   poor, "-o", File("poor_closed.pbstream"), "--fail_on",
       "odometry_bends"};
@@ -136,12 +142,7 @@ TEST_F(CloseLoopsTest, TellsWhetherCartographerWouldBendTheMap) {
 }
 
 TEST_F(CloseLoopsTest, DropsOdometryThatHasShapedAMap) {
-  const std::string poor = File("poor.pbstream");
-  DriftOptions drift;
-  drift.odometry_yaw_bias = 0.01;
-  drift.local_slam_fraction = 0.05;
-  testing::WriteShortDrive(testing::MakeSmallOffice(1), 1, poor,
-                           /*with_submaps=*/true, drift);
+  const std::string poor = WriteDriveWithPoorOdometry();
   directory_->Write("trusting.lua",
                     "include \"sdf_global_constraints.lua\"\n"
                     "SDF_GLOBAL_CONSTRAINTS.loop_closing.closing."
@@ -164,14 +165,9 @@ TEST_F(CloseLoopsTest, DropsOdometryThatHasShapedAMap) {
     EXPECT_EQ(before->pose_graph.constraints.size(),
               after->pose_graph.constraints.size())
         << subcommand;
-    double motion = 0.;
-    for (const auto& [id, node] : before->pose_graph.nodes) {
-      motion = std::max(
-          motion, (after->pose_graph.nodes.at(id).T_map_node.translation() -
-                   node.T_map_node.translation())
-                      .norm());
-    }
-    EXPECT_GT(motion, 0.02) << subcommand;
+    EXPECT_GT(testing::LargestMotion(before->pose_graph, after->pose_graph),
+              0.02)
+        << subcommand;
   }
 }
 
