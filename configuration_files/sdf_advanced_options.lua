@@ -276,6 +276,10 @@ SDF_GLOBAL_CONSTRAINTS = {
         prior_contradiction_ratio = 0.05,
         -- Matches whose own score is lower skip neighbourhood verification.
         min_pair_score = -5.,
+        -- The neighbours of a match are compared one by one, as long as its
+        -- score with what they have shown is at least this. Smaller: more is
+        -- known of matches that are refused all the same, slower.
+        min_promising_score = -2.,
         -- Least score at which a match proposes poses to neighbouring pairs.
         -- Larger: faster, less recall.
         min_proposing_score = 0.,

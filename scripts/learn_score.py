@@ -415,7 +415,9 @@ def read_set_list(path):
 
 # --- The program. -------------------------------------------------------------
 
+# All neighbours of all matches: what is refused at once teaches, too.
 CONFIGURATION = """include "sdf_global_constraints.lua"
+SDF_GLOBAL_CONSTRAINTS.loop_closing.recognition.neighbourhood.min_promising_score = -1e6
 return SDF_GLOBAL_CONSTRAINTS
 """
 # Few wrong answers lie near right ones: a weaker penalty follows single ones.

@@ -254,6 +254,7 @@ inline void VisitOptions(OptionVisitor& visit, NeighbourhoodOptions& options) {
   visit("prior_wall_length_meters", options.prior_wall_length_meters);
   visit("prior_contradiction_ratio", options.prior_contradiction_ratio);
   visit("min_pair_score", options.min_pair_score);
+  visit("min_promising_score", options.min_promising_score);
   visit("min_proposing_score", options.min_proposing_score);
   visit("max_num_rounds", options.max_num_rounds);
   visit("max_proposal_index_distance", options.max_proposal_index_distance);

@@ -52,7 +52,10 @@ std::optional<PairPose> OwnMatch(const NeighbourhoodMaps& maps,
                                         : std::make_pair(reference, query));
   if (found == maps.own_matches->end()) return std::nullopt;
   PairPose match = found->second;
-  if (is_swapped) match.T_reference_query = match.T_reference_query.Inverse();
+  if (is_swapped) {
+    std::swap(match.reference, match.query);
+    match.T_reference_query = match.T_reference_query.Inverse();
+  }
   return match;
 }
 
@@ -97,90 +100,89 @@ class ConfirmingPairs {
 class NeighbourhoodMeasurer {
  public:
   NeighbourhoodMeasurer(const NeighbourhoodOptions& options,
-                        const VerificationOptions& verification,
-                        const NeighbourhoodMaps& maps, const PairPose& pair)
-      : options_(options),
-        verification_(verification),
-        maps_(maps),
-        reference_(pair.reference),
-        confirming_(
-            TilesOf(pair.reference, pair.query, pair.T_reference_query)) {
-    agreement_ = verification.agreement;
-    agreement_.max_num_points = options.num_points;
-  }
+                        const NeighbourhoodMaps& maps, const PairPose& match,
+                        NeighbourWalls* const walls)
+      : options_(options), maps_(maps), match_(match), walls_(walls) {}
 
-  void Add(const SubmapId& reference, const SubmapId& query,
-           const Rigid2& predicted) {
-    const SurfaceModel& i = maps_.references.places->at(reference).surface;
-    const SurfaceModel& j = maps_.queries.places->at(query).surface;
-    if (!OverlapsEnough(i, j, predicted)) return;
-    const std::optional<PairPose> match = OwnMatch(maps_, reference, query);
-    const bool is_confirmed =
-        match &&
-        AreNear(match->T_reference_query, predicted, ObservedCentroid(j),
-                {options_.max_prediction_error_meters,
-                 options_.max_prediction_rotation_error});
-    NeighbourhoodEvidence& evidence = neighbourhood_.evidence;
-    std::optional<Rigid2> pose;
-    if (is_confirmed) {
-      confirming_.Add(TilesOf(reference, query, match->T_reference_query));
-      pose = match->T_reference_query;
-    } else {
-      if (match) evidence.num_refuting += Probability(match->score);
-      pose = RegisterSubmaps(verification_.registration, i, j, predicted);
-    }
-    if (!pose || !OverlapsEnough(i, j, *pose)) return;
-    ++evidence.num_pairs;
-    AddWall(i, j, *pose);
-    AddWall(j, i, pose->Inverse());
-    if (!is_confirmed) {
-      neighbourhood_.proposals.push_back({reference, query, *pose});
+  // Looks at a neighbouring pair where it is predicted: at its own match, or
+  // later, with CompareOthers.
+  void Add(const PairPose& predicted) {
+    const std::optional<PairPose> own =
+        OwnMatch(maps_, predicted.reference, predicted.query);
+    if (!own) {
+      others_.push_back(predicted);
+    } else if (OverlapsEnough(predicted)) {
+      AddMatched(predicted, *own);
     }
   }
 
-  [[nodiscard]] Neighbourhood Take() {
-    neighbourhood_.evidence.num_confirming = confirming_.Count();
-    return std::move(neighbourhood_);
+  // Registers and compares the pairs whose own matches do not confirm the
+  // prediction, as long as the match is promising.
+  void CompareOthers() {
+    if (confirming_) {
+      neighbourhood_.evidence.num_confirming = confirming_->Count();
+    }
+    for (const PairPose& predicted : others_) {
+      if (NeighbourhoodScore(options_, match_.score, neighbourhood_.evidence) <
+          options_.min_promising_score) {
+        return;
+      }
+      if (!OverlapsEnough(predicted)) continue;
+      const std::optional<ComparedWalls> walls = walls_->Registered(predicted);
+      if (!walls) continue;
+      Count(walls);
+      neighbourhood_.proposals.push_back(
+          {predicted.reference, predicted.query, walls->T_reference_query});
+    }
   }
+
+  [[nodiscard]] Neighbourhood Take() { return std::move(neighbourhood_); }
 
  private:
-  [[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
-                                    const SurfaceModel& query,
-                                    const Rigid2& pose) const {
-    return OverlapsBy(options_.min_overlap_area, reference, query, pose);
+  [[nodiscard]] bool OverlapsEnough(const PairPose& predicted) const {
+    return OverlapsBy(options_.min_overlap_area,
+                      maps_.references.places->at(predicted.reference).surface,
+                      maps_.queries.places->at(predicted.query).surface,
+                      predicted.T_reference_query);
+  }
+
+  void AddMatched(const PairPose& predicted, const PairPose& own) {
+    if (AreNear(own.T_reference_query, predicted.T_reference_query,
+                ObservedCentroid(maps_.queries.places->at(own.query).surface),
+                {options_.max_prediction_error_meters,
+                 options_.max_prediction_rotation_error})) {
+      if (!confirming_) confirming_.emplace(TilesOf(match_));
+      confirming_->Add(TilesOf(own));
+      Count(walls_->AtMatch(own));
+    } else {
+      neighbourhood_.evidence.num_refuting += Probability(own.score);
+      others_.push_back(predicted);
+    }
   }
 
   // In the frame of the match's reference, by local SLAM.
-  [[nodiscard]] std::set<TileIndex> TilesOf(const SubmapId& reference,
-                                            const SubmapId& query,
-                                            const Rigid2& pose) const {
-    return OverlapTiles(maps_.references.places->at(reference).surface,
-                        maps_.queries.places->at(query).surface, pose,
-                        RelativePose(maps_.references, reference_, reference),
-                        kGroundTileSize);
+  [[nodiscard]] std::set<TileIndex> TilesOf(const PairPose& pair) const {
+    return OverlapTiles(
+        maps_.references.places->at(pair.reference).surface,
+        maps_.queries.places->at(pair.query).surface, pair.T_reference_query,
+        RelativePose(maps_.references, match_.reference, pair.reference),
+        kGroundTileSize);
   }
 
-  // Adds the wall of `points` in metres: each sampled point also stands for
-  // those not sampled.
-  void AddWall(const SurfaceModel& model, const SurfaceModel& points,
-               const Rigid2& T_model_points) {
-    const DirectedAgreement agreement =
-        MeasureAgreement(agreement_, model, points.walls, T_model_points);
-    const double num_sampled = static_cast<double>(std::min(
-        points.walls.size(), static_cast<size_t>(agreement_.max_num_points)));
-    const double stands_for = static_cast<double>(points.walls.size()) /
-                              num_sampled * points.geometry.resolution;
+  void Count(const std::optional<ComparedWalls>& walls) {
+    if (!walls) return;
     NeighbourhoodEvidence& evidence = neighbourhood_.evidence;
-    evidence.wall_length += stands_for * agreement.num_points;
-    evidence.contradicting_length += stands_for * agreement.contradictions;
+    ++evidence.num_pairs;
+    evidence.wall_length += walls->wall_length;
+    evidence.contradicting_length += walls->contradicting_length;
   }
 
   const NeighbourhoodOptions& options_;
-  const VerificationOptions& verification_;
   const NeighbourhoodMaps& maps_;
-  const SubmapId reference_;  // of the match
-  ConfirmingPairs confirming_;
-  AgreementOptions agreement_;
+  const PairPose& match_;
+  std::optional<ConfirmingPairs> confirming_;  // of the first on
+  NeighbourWalls* const walls_;
+  std::vector<PairPose> others_;
   Neighbourhood neighbourhood_;
 };
 
@@ -243,6 +245,9 @@ std::string Validate(const NeighbourhoodOptions& options) {
     return "max_prediction_error_meters and max_prediction_rotation_error must "
            "be positive";
   }
+  if (!std::isfinite(options.min_promising_score)) {
+    return "min_promising_score must be finite";
+  }
   if (!(options.max_gain >= 0.)) return "max_gain must not be negative";
   return Validate(options.weights);
 }
@@ -288,25 +293,34 @@ double NeighbourhoodScore(const NeighbourhoodOptions& options,
   return std::min(score, pair_score + options.max_gain);
 }
 
-Neighbourhood MeasureNeighbourhood(const NeighbourhoodOptions& options,
-                                   const VerificationOptions& verification,
-                                   const NeighbourhoodMaps& maps,
-                                   const PairPose& pair) {
+NeighbourhoodMeter::NeighbourhoodMeter(const NeighbourhoodOptions& options,
+                                       const VerificationOptions& verification,
+                                       const NeighbourhoodMaps& maps)
+    : options_(options),
+      maps_(maps),
+      walls_(verification, options.num_points, options.min_overlap_area,
+             maps.references, maps.queries) {
   CHECK_EQ(Validate(options), "");
-  NeighbourhoodMeasurer measurer(options, verification, maps, pair);
-  for (const SubmapId& i : Neighbours(options, maps.references,
-                                      maps.reference_links, pair.reference)) {
-    const Rigid2 T_i_query = RelativePose(maps.references, i, pair.reference) *
-                             pair.T_reference_query;
+}
+
+Neighbourhood NeighbourhoodMeter::Measure(const PairPose& match) {
+  NeighbourhoodMeasurer measurer(options_, maps_, match, &walls_);
+  for (const SubmapId& i : Neighbours(options_, maps_.references,
+                                      maps_.reference_links, match.reference)) {
+    const Rigid2 T_i_query =
+        RelativePose(maps_.references, i, match.reference) *
+        match.T_reference_query;
     for (const SubmapId& j :
-         Neighbours(options, maps.queries, maps.query_links, pair.query)) {
-      if ((i == pair.reference && j == pair.query) ||
-          (maps.min_index_gap && ShareScans(i, j, *maps.min_index_gap))) {
+         Neighbours(options_, maps_.queries, maps_.query_links, match.query)) {
+      if ((i == match.reference && j == match.query) ||
+          (maps_.min_index_gap && ShareScans(i, j, *maps_.min_index_gap))) {
         continue;
       }
-      measurer.Add(i, j, T_i_query * RelativePose(maps.queries, pair.query, j));
+      measurer.Add(
+          {i, j, T_i_query * RelativePose(maps_.queries, match.query, j)});
     }
   }
+  measurer.CompareOthers();
   return measurer.Take();
 }
 

@@ -32,6 +32,7 @@
 #include "cartographer_sdf/grid/pair_pose.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbour_walls.h"
 #include "cartographer_sdf/recognition/trajectory_links.h"
 
 namespace cartographer_sdf {
@@ -70,6 +71,10 @@ struct NeighbourhoodOptions {
   double prior_contradiction_ratio = 0.05;
   // The neighbourhood of a match with a lower pair score is not measured.
   double min_pair_score = -5.;
+  // Neighbouring pairs are compared only as long as the score of the match,
+  // with the evidence so far, is at least this; log-odds. Own matches of the
+  // neighbouring pairs are looked at first.
+  double min_promising_score = -2.;
   // A match with at least this score in its neighbourhood proposes poses to the
   // neighbouring pairs; log-odds.
   double min_proposing_score = 0.;
@@ -146,12 +151,24 @@ struct NeighbourhoodMaps {
   const OwnMatches* own_matches = nullptr;
 };
 
-// Measures the neighbourhood of the match `pair`. Takes as long as verifying
-// about ten poses.
-[[nodiscard]] Neighbourhood MeasureNeighbourhood(
-    const NeighbourhoodOptions& options,
-    const VerificationOptions& verification, const NeighbourhoodMaps& maps,
-    const PairPose& pair);
+// Measures the neighbourhoods of matches. A match that is promising takes as
+// long as verifying about ten poses. Thread-safe; no result depends on what was
+// measured before. `options` and `maps` must outlive it.
+class NeighbourhoodMeter {
+ public:
+  NeighbourhoodMeter(const NeighbourhoodOptions& options,
+                     const VerificationOptions& verification,
+                     const NeighbourhoodMaps& maps);
+
+  // `match.score` is that of the pair by itself. Where the evidence so far puts
+  // the match below min_promising_score, the remaining pairs are not compared.
+  [[nodiscard]] Neighbourhood Measure(const PairPose& match);
+
+ private:
+  const NeighbourhoodOptions& options_;
+  const NeighbourhoodMaps& maps_;
+  NeighbourWalls walls_;
+};
 
 }  // namespace cartographer_sdf
 

@@ -98,7 +98,10 @@ class NeighbourhoodVerifier {
   NeighbourhoodVerifier(const NeighbourhoodOptions& options,
                         const MatchOptions& match_options,
                         const NeighbourhoodMaps& maps)
-      : options_(options), match_options_(match_options), maps_(maps) {
+      : options_(options),
+        match_options_(match_options),
+        maps_(maps),
+        meter_(options, match_options.verification, maps) {
     CHECK_EQ(Validate(options), "");
     CHECK(match_options.method == Method::kSdf);
   }
@@ -108,7 +111,9 @@ class NeighbourhoodVerifier {
   std::vector<PairPose> VerifyMatch(Match* const match) const {
     Neighbourhood neighbourhood;
     if (match->pair_score >= options_.min_pair_score) {
-      neighbourhood = Measure(match->pair);
+      neighbourhood =
+          Measure({match->pair.reference, match->pair.query,
+                   match->pair.T_reference_query, match->pair_score});
     }
     SetEvidence(neighbourhood.evidence, match);
     return ProposalsOf(*match, std::move(neighbourhood.proposals));
@@ -216,8 +221,9 @@ class NeighbourhoodVerifier {
                      query.surface, PosesOf(task), hypotheses)) {
       Opinion opinion;
       if (verified.score >= options_.min_pair_score) {
-        opinion.neighbourhood = Measure(
-            {task.ids.first, task.ids.second, verified.T_reference_query});
+        opinion.neighbourhood =
+            Measure({task.ids.first, task.ids.second,
+                     verified.T_reference_query, verified.score});
       }
       opinion.score = NeighbourhoodScore(options_, verified.score,
                                          opinion.neighbourhood.evidence);
@@ -288,8 +294,7 @@ class NeighbourhoodVerifier {
   }
 
   [[nodiscard]] Neighbourhood Measure(const PairPose& pair) const {
-    return MeasureNeighbourhood(options_, match_options_.verification, maps_,
-                                pair);
+    return meter_.Measure(pair);
   }
 
   void SetEvidence(const NeighbourhoodEvidence& evidence,
@@ -342,6 +347,7 @@ class NeighbourhoodVerifier {
   const NeighbourhoodOptions& options_;
   const MatchOptions& match_options_;
   const NeighbourhoodMaps& maps_;
+  mutable NeighbourhoodMeter meter_;  // remembers
 };
 
 // Only what pairs found by themselves: poses that neighbours propose are no

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "gmock/gmock.h"
@@ -22,12 +23,15 @@ using testing::IsPoseNear;
 using testing::TwoVisits;
 
 constexpr double kDegree = M_PI / 180.;
+// Of a match that is likely by itself.
+constexpr double kPairScore = 5.;
 
 Neighbourhood Ask(const TwoVisits& visits, const Rigid2& T_reference_query,
                   const NeighbourhoodOptions& options = {}) {
-  return MeasureNeighbourhood(
-      options, VerificationOptions(), {visits.Places(), visits.Places(), 3},
-      {TwoVisits::kWestFirst, TwoVisits::kWestAgain, T_reference_query});
+  return NeighbourhoodMeter(options, VerificationOptions(),
+                            {visits.Places(), visits.Places(), 3})
+      .Measure({TwoVisits::kWestFirst, TwoVisits::kWestAgain, T_reference_query,
+                kPairScore});
 }
 
 // With the match of the east rooms by themselves, `error` away from the truth.
@@ -43,10 +47,9 @@ Neighbourhood AskWithEastMatch(const TwoVisits& visits, const Rigid2& error,
         score}}};
   NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
   maps.own_matches = &own_matches;
-  return MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
-                              maps,
-                              {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
-                               visits.T_west_first_west_again()});
+  return NeighbourhoodMeter(NeighbourhoodOptions(), VerificationOptions(), maps)
+      .Measure({TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                visits.T_west_first_west_again(), kPairScore});
 }
 
 bool Proposes(const Neighbourhood& neighbourhood, const SubmapId& reference,
@@ -86,6 +89,62 @@ TEST(NeighbourhoodTest, NeighboursOfAWrongPoseContradict) {
           0.5);
 }
 
+TEST(NeighbourhoodTest, MatchesThatAreNotPromisingAreNotComparedFurther) {
+  const TwoVisits visits;
+  const auto count = [&visits](const double pair_score) {
+    NeighbourhoodOptions options;
+    options.min_promising_score = -2.;
+    return NeighbourhoodMeter(options, VerificationOptions(),
+                              {visits.Places(), visits.Places(), 3})
+        .Measure({TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                  visits.T_west_first_west_again(), pair_score})
+        .evidence.num_pairs;
+  };
+  EXPECT_EQ(count(-3.), 0);
+  EXPECT_GE(count(-1.), 1);
+}
+
+TEST(NeighbourhoodTest, NothingDependsOnWhatWasMeasuredBefore) {
+  const TwoVisits visits;
+  // With exact odometry, all submaps are neighbours: each pair is predicted in
+  // either order, by each match.
+  std::map<SubmapId, OdometryPose> odometry;
+  const auto& places = *visits.Places().places;
+  for (const auto& [id, place] : places) {
+    odometry[id] = {visits.T_world_submap(id), 10. * id.index};
+  }
+  const TrajectoryPlaces map{&places, &odometry};
+  const auto true_pair = [&visits](const SubmapId& reference,
+                                   const SubmapId& query) {
+    return PairPose{reference, query,
+                    visits.T_world_submap(reference).Inverse() *
+                        visits.T_world_submap(query)};
+  };
+  NeighbourhoodMaps maps{map, map, 3};
+  const std::vector<PairPose> matches = {
+      true_pair(TwoVisits::kWestFirst, TwoVisits::kWestAgain),
+      true_pair(TwoVisits::kEastFirst, TwoVisits::kEastAgain),
+      true_pair(TwoVisits::kWestFirst, TwoVisits::kEastAgain)};
+  const OwnMatches own_matches = {
+      {{matches[0].reference, matches[0].query}, matches[0]}};
+  maps.own_matches = &own_matches;
+  NeighbourhoodOptions options;
+  options.num_steps = 10;
+  NeighbourhoodMeter meter(options, VerificationOptions(), maps);
+  for (const PairPose& match : matches) {
+    const NeighbourhoodEvidence evidence = meter.Measure(match).evidence;
+    const NeighbourhoodEvidence alone =
+        NeighbourhoodMeter(options, VerificationOptions(), maps)
+            .Measure(match)
+            .evidence;
+    EXPECT_EQ(evidence.num_pairs, alone.num_pairs);
+    EXPECT_EQ(evidence.wall_length, alone.wall_length);
+    EXPECT_EQ(evidence.contradicting_length, alone.contradicting_length);
+    EXPECT_GE(evidence.num_pairs, 3);
+    EXPECT_LT(evidence.contradicting_length, 0.03 * evidence.wall_length);
+  }
+}
+
 TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
   // Off by this once the other room is reached.
   const Rigid2 drift(0.1, -0.1, 1.5 * kDegree);
@@ -112,11 +171,10 @@ TEST(NeighbourhoodTest, ProposesPosesThatCorrectTheDriftInBetween) {
 TEST(NeighbourhoodTest, LeavesOutPairsThatShareScans) {
   const TwoVisits visits;
   const auto count = [&](const std::optional<int> min_index_gap) {
-    return MeasureNeighbourhood(
-               NeighbourhoodOptions(), VerificationOptions(),
-               {visits.Places(), visits.Places(), min_index_gap},
-               {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
-                visits.T_west_first_west_again()})
+    return NeighbourhoodMeter(NeighbourhoodOptions(), VerificationOptions(),
+                              {visits.Places(), visits.Places(), min_index_gap})
+        .Measure({TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                  visits.T_west_first_west_again()})
         .evidence.num_pairs;
   };
   EXPECT_GT(count(3), 0);
@@ -148,8 +206,9 @@ TEST(NeighbourhoodTest, IndicesMayBeAsLargeAsTheyLike) {
     odometry[id] = {};
   }
   const TrajectoryPlaces map{&places, &odometry};
-  EXPECT_EQ(MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
-                                 {map, map, 3}, {{0, 0}, {0, kLast}, Rigid2()})
+  EXPECT_EQ(NeighbourhoodMeter(NeighbourhoodOptions(), VerificationOptions(),
+                               {map, map, 3})
+                .Measure({{0, 0}, {0, kLast}, Rigid2()})
                 .evidence.num_pairs,
             0);
 }
@@ -181,8 +240,9 @@ TEST(NeighbourhoodTest, GroundThatTheMatchShowsConfirmsNothing) {
        {TwoVisits::kWestFirst, TwoVisits::kEastAgain, Rigid2(), 5.}}};
   maps.own_matches = &own_matches;
   const auto confirming = [&maps](const SubmapId& query, const Rigid2& pose) {
-    return MeasureNeighbourhood(NeighbourhoodOptions(), VerificationOptions(),
-                                maps, {TwoVisits::kWestFirst, query, pose})
+    return NeighbourhoodMeter(NeighbourhoodOptions(), VerificationOptions(),
+                              maps)
+        .Measure({TwoVisits::kWestFirst, query, pose})
         .evidence.num_confirming;
   };
   // The room is seen in full from either; what is new lies behind the door.
@@ -213,11 +273,11 @@ TEST(NeighbourhoodTest, LeavesOutWhatLiesBeyondABrokenLink) {
       broken.IsBrokenBetween(TwoVisits::kWestAgain, TwoVisits::kEastAgain));
   NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
   const auto asks_east = [&] {
-    return Proposes(MeasureNeighbourhood(
-                        NeighbourhoodOptions(), VerificationOptions(), maps,
-                        {TwoVisits::kWestFirst, TwoVisits::kWestAgain,
-                         visits.T_west_first_west_again()}),
-                    TwoVisits::kEastFirst, TwoVisits::kEastAgain);
+    return Proposes(
+        NeighbourhoodMeter(NeighbourhoodOptions(), VerificationOptions(), maps)
+            .Measure({TwoVisits::kWestFirst, TwoVisits::kWestAgain,
+                      visits.T_west_first_west_again()}),
+        TwoVisits::kEastFirst, TwoVisits::kEastAgain);
   };
   EXPECT_TRUE(asks_east());
   maps.query_links = &broken;

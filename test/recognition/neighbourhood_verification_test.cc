@@ -282,8 +282,8 @@ TEST(VerifyNeighbourhoodTest, FillsInScoreVerdictAndEvidence) {
   const NeighbourhoodMaps maps{visits.Places(), visits.Places(), 3};
   VerifyNeighbourhood(options, match_options, maps, &match);
   const NeighbourhoodEvidence expected =
-      MeasureNeighbourhood(options, match_options.verification, maps,
-                           before.pair)
+      NeighbourhoodMeter(options, match_options.verification, maps)
+          .Measure(before.pair)
           .evidence;
   ASSERT_TRUE(match.neighbourhood.has_value());
   ASSERT_GE(expected.num_pairs, 1);
