@@ -49,6 +49,16 @@ void MeasureErrors(const PoseGraph& pose_graph,
   }
 }
 
+// Adds the run that continued one to its summary.
+void Continue(const OptimizationSummary& continued,
+              OptimizationSummary* const summary) {
+  summary->final_cost = continued.final_cost;
+  summary->num_iterations += continued.num_iterations;
+  summary->seconds += continued.seconds;
+  summary->converged = continued.converged;
+  summary->message = continued.message;
+}
+
 // Removes the closures that the graph contradicts most; returns false if there
 // are none.
 bool RejectWorst(const OutlierRejectionOptions& options,
@@ -113,8 +123,8 @@ OptimizedGraph OptimizeAndRejectOutliers(
     if (result.pose_graph.constraints.size() == pose_graph.constraints.size()) {
       return result;
     }
-    result.optimizations.push_back(
-        Optimize(optimization, frozen_trajectories, &result.pose_graph));
+    result.optimizations.push_back(Optimize(optimization, frozen_trajectories,
+                                            &result.pose_graph, kRoughRun));
     MeasureErrors(result.pose_graph, closures);
     if (on_progress) {
       on_progress(static_cast<double>(round + 1) /
@@ -122,9 +132,13 @@ OptimizedGraph OptimizeAndRejectOutliers(
     }
     // Nothing may be removed after the last round, as the graph would not be
     // optimised again.
-    if (round >= options.max_num_rounds || !RejectWorst(options, closures)) {
-      return result;
-    }
+    const bool is_last = round >= options.max_num_rounds;
+    if (!is_last && RejectWorst(options, closures)) continue;
+    Continue(Optimize(optimization, frozen_trajectories, &result.pose_graph,
+                      kSettlingRun),
+             &result.optimizations.back());
+    MeasureErrors(result.pose_graph, closures);
+    if (is_last || !RejectWorst(options, closures)) return result;
   }
 }
 

@@ -67,7 +67,8 @@ std::optional<HostMotion> PredictHostMotion(const OptimizationOptions& host,
   moved.odometry_weights.clear();
   OptimizationOptions rigid = host;
   rigid.min_slip_angle = M_PI;  // none
-  Optimize(rigid, /*frozen_trajectories=*/{}, &moved);
+  // The host starts from the poses of the map, too.
+  Optimize(rigid, /*frozen_trajectories=*/{}, &moved, kSettlingRun);
   for (const auto& [id, node] : pose_graph.nodes) {
     motion.max_translation = std::max(
         motion.max_translation, (moved.nodes.at(id).T_map_node.translation() -

@@ -51,6 +51,39 @@ class SpaCostFunction : public ceres::SizedCostFunction<3, 3, 3> {
   const SpaEdge edge_;
 };
 
+// Ends the iterations where a step has moved no pose by more than the run asks
+// for. Steps that were refused move nothing and do not count.
+class SettledPoses : public ceres::IterationCallback {
+ public:
+  // `poses` are those that the solver changes.
+  SettledPoses(const OptimizationRun& run,
+               const std::vector<Eigen::Vector3d>& poses)
+      : run_(run), poses_(poses), before_(poses) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary& iteration) override {
+    if (iteration.iteration == 0 || !iteration.step_is_successful) {
+      return ceres::SOLVER_CONTINUE;
+    }
+    has_settled_ = true;
+    for (size_t i = 0; i != poses_.size() && has_settled_; ++i) {
+      const Eigen::Vector3d step = poses_[i] - before_[i];
+      has_settled_ = step.head<2>().norm() <= run_.max_step_meters &&
+                     std::abs(step.z()) <= run_.max_step_angle;
+    }
+    before_ = poses_;
+    return has_settled_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY
+                        : ceres::SOLVER_CONTINUE;
+  }
+  [[nodiscard]] bool has_settled() const { return has_settled_; }
+
+ private:
+  const OptimizationRun& run_;
+  const std::vector<Eigen::Vector3d>& poses_;
+  std::vector<Eigen::Vector3d> before_;
+  bool has_settled_ = false;
+};
+
 ceres::Solver::Options SolverOptions(const OptimizationOptions& options,
                                      const SpaGraph& graph) {
   return SparseSolverOptions(
@@ -95,6 +128,18 @@ void SetPoses(const SpaGraph& graph, PoseGraph* const pose_graph) {
     set_pose(&node.T_map_node);
   }
   MoveLandmarks(old_nodes, pose_graph);
+}
+
+// Takes the poses of the initialisation where their cost is lower.
+void InitializeRotationFirst(const OptimizationOptions& options,
+                             const double initial_cost, SpaGraph* const graph) {
+  std::optional<std::vector<Eigen::Vector3d>> poses =
+      RotationFirstPoses(*graph, options.huber_scale);
+  if (!poses.has_value()) return;
+  std::swap(graph->poses, *poses);
+  if (!(SpaCost(*graph, options.huber_scale) < initial_cost)) {
+    std::swap(graph->poses, *poses);
+  }
 }
 
 constexpr int kMinNumSteps = 20;
@@ -153,7 +198,8 @@ std::string Validate(const OptimizationOptions& options) {
 
 OptimizationSummary Optimize(const OptimizationOptions& options,
                              const std::set<int>& frozen_trajectories,
-                             PoseGraph* const pose_graph) {
+                             PoseGraph* const pose_graph,
+                             const OptimizationRun& run) {
   CHECK_EQ(Validate(options), "");
   const auto start_time = std::chrono::steady_clock::now();
   SpaGraph graph = BuildSpaGraph(options, frozen_trajectories, *pose_graph);
@@ -164,16 +210,15 @@ OptimizationSummary Optimize(const OptimizationOptions& options,
     summary.message = "the pose graph has values that are not finite";
     return summary;
   }
-  if (std::optional<std::vector<Eigen::Vector3d>> poses =
-          RotationFirstPoses(graph, options.huber_scale);
-      poses.has_value()) {
-    std::swap(graph.poses, *poses);
-    if (!(SpaCost(graph, options.huber_scale) < summary.initial_cost)) {
-      std::swap(graph.poses, *poses);
-    }
+  if (run.initialize_rotation_first) {
+    InitializeRotationFirst(options, summary.initial_cost, &graph);
   }
+  SettledPoses settled(run, graph.poses);
+  ceres::Solver::Options solver_options = SolverOptions(options, graph);
+  solver_options.update_state_every_iteration = true;
+  solver_options.callbacks.push_back(&settled);
   const ceres::Solver::Summary solution = SolveSparse(
-      SolverOptions(options, graph), graph, options.huber_scale,
+      solver_options, graph, options.huber_scale,
       [](const SpaEdge& edge) { return new SpaCostFunction(edge); },
       &graph.poses);
   if (solution.IsSolutionUsable()) {
@@ -182,8 +227,10 @@ OptimizationSummary Optimize(const OptimizationOptions& options,
   }
   summary.num_iterations =
       solution.num_successful_steps + solution.num_unsuccessful_steps;
-  summary.converged = solution.termination_type == ceres::CONVERGENCE;
-  summary.message = solution.message;
+  summary.converged =
+      settled.has_settled() || solution.termination_type == ceres::CONVERGENCE;
+  summary.message =
+      settled.has_settled() ? "the poses have settled" : solution.message;
   summary.seconds = std::chrono::duration<double>(
                         std::chrono::steady_clock::now() - start_time)
                         .count();

@@ -52,6 +52,22 @@ struct OptimizationOptions {
 // Returns a sentence that begins with the offending field, or an empty string.
 [[nodiscard]] std::string Validate(const OptimizationOptions& options);
 
+// How an optimization begins, and how exactly it ends.
+struct OptimizationRun {
+  // Whether to try a rotation-first initialisation (rotation_first.h), without
+  // which trajectories rotated by nearly 180 degrees do not converge. It takes
+  // about a third of the time.
+  bool initialize_rotation_first = true;
+  // Ends where no pose moves by more than this in an iteration [m], [rad]; or,
+  // as always, where the cost hardly falls.
+  double max_step_meters = 0.;
+  double max_step_angle = 0.;
+};
+// Near enough to the minimum to see outliers.
+constexpr OptimizationRun kRoughRun{true, 2e-2, 2e-3};
+// From poses that are near the minimum.
+constexpr OptimizationRun kSettlingRun{false};
+
 struct OptimizationSummary {
   // Cost of the host's problem, before and after.
   double initial_cost = 0.;
@@ -69,14 +85,14 @@ struct OptimizationSummary {
 // of each connected component without a frozen trajectory: in a connected graph
 // with nothing frozen the very first submap, as in the host.
 //
-// Starts from the given poses or, where its cost is lower, from a
-// rotation-first initialisation (rotation_first.h), without which trajectories
-// rotated by nearly 180 degrees do not converge. Leaves the graph unchanged if
+// Starts from the given poses or, where that is asked for and its cost is
+// lower, from a rotation-first initialisation. Leaves the graph unchanged if
 // the solver fails or a value is not finite. Constraints must refer to submaps
 // and nodes of the graph.
 OptimizationSummary Optimize(const OptimizationOptions& options,
                              const std::set<int>& frozen_trajectories,
-                             PoseGraph* pose_graph);
+                             PoseGraph* pose_graph,
+                             const OptimizationRun& run = {});
 
 // Deviation of the graph's poses from a measurement.
 struct ConstraintError {

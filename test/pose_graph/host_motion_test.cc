@@ -52,7 +52,7 @@ TEST(PredictHostMotionTest, IsThatOfAnotherOptimisation) {
   EXPECT_EQ(motion->host_weights.translation, 1e5);
   EXPECT_EQ(motion->map_weights.rotation, 1e3);
   PoseGraph moved = map;
-  Optimize(OptimizationOptions(), {}, &moved);
+  Optimize(OptimizationOptions(), {}, &moved, kSettlingRun);
   // Turned by half of 0.4 rad, within loops of 200 m that closures hold.
   EXPECT_GT(motion->max_translation, 0.3);
   EXPECT_EQ(motion->max_translation, testing::LargestMotion(map, moved));
