@@ -559,6 +559,13 @@ SDF_GLOBAL_CONSTRAINTS = {
     lost_after_seconds = 2.,
     lost_after_scans = 5,
   },
+  -- Which sessions are compared (merge).
+  session_links = {
+    -- Each is compared with so many of those that it resembles most, and with
+    -- others where that does not connect them. Larger: more constraints between
+    -- sessions, for time that grows with the square of their number.
+    min_num_links_per_session = 4,
+  },
   -- Detection of merged maps that fold over each other (merge).
   fold_check = {
     -- Submaps contradict each other if a larger fraction of their walls lies in

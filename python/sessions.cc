@@ -137,11 +137,12 @@ MergedMap Merge(const std::vector<std::string>& paths,
   for (const std::string& path : paths) {
     sources.push_back(SourceOf(path, repair, drop_odometry));
   }
-  MergedMap result{ValueOrThrow(MergeSessions(
-                       options.fold_check, options.localization,
-                       options.scan_places, options.loop_closing, sources,
-                       frozen_trajectories, ExecutorOf(threads))),
-                   {}};
+  MergedMap result{
+      ValueOrThrow(MergeSessions(options.fold_check, options.session_links,
+                                 options.localization, options.scan_places,
+                                 options.loop_closing, sources,
+                                 frozen_trajectories, ExecutorOf(threads))),
+      {}};
   if (!result.refusal.empty()) return result;
   if (output) {
     ThrowUnlessOk(

@@ -5,29 +5,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
-#include <numeric>
+#include <map>
+#include <set>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
 namespace {
-
-// For each index, the lowest one that it is joined with.
-std::vector<size_t> SingleGroups(const size_t size) {
-  std::vector<size_t> groups(size);
-  std::iota(groups.begin(), groups.end(), size_t{0});
-  return groups;
-}
-
-void JoinGroups(const size_t a, const size_t b,
-                std::vector<size_t>* const groups) {
-  const size_t group_a = (*groups)[a], group_b = (*groups)[b];
-  std::replace(groups->begin(), groups->end(), std::max(group_a, group_b),
-               std::min(group_a, group_b));
-}
 
 // On ties, returns the first.
 size_t LargestGroup(const std::vector<size_t>& groups) {
@@ -37,22 +22,6 @@ size_t LargestGroup(const std::vector<size_t>& groups) {
              sizes.begin(), sizes.end(),
              [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
-}
-
-// A session in which the robot was carried has no one pose.
-bool IsCertain(const SessionLink& link) {
-  return link.localization.verdict == LocalizationVerdict::kLocalized &&
-         link.localization.parts.jumps.empty();
-}
-
-// For each session, the lowest index of those that certain links connect.
-std::vector<size_t> GroupSessions(const size_t num_sessions,
-                                  const std::vector<SessionLink>& links) {
-  std::vector<size_t> groups = SingleGroups(num_sessions);
-  for (const SessionLink& link : links) {
-    if (IsCertain(link)) JoinGroups(link.first, link.second, &groups);
-  }
-  return groups;
 }
 
 // Returns (first of the group <- session) for the sessions of a group, along
@@ -282,29 +251,14 @@ absl::StatusOr<std::vector<Session>> ReadSessions(
   return sessions;
 }
 
-// Localizes every session in every other, once.
-std::vector<SessionLink> LinkSessions(LocalizationOptions localization,
-                                      const LoopClosingOptions& stages,
-                                      const std::vector<Session>& sessions,
-                                      const Executor& executor,
-                                      StageClock* const clock) {
-  // Use every match.
-  localization.num_first_places = std::numeric_limits<int>::max();
-  localization.max_num_confirmed_pairs = std::numeric_limits<int>::max();
-  std::vector<SessionLink> links;
-  for (size_t first = 0; first < sessions.size(); ++first) {
-    for (size_t second = first + 1; second < sessions.size(); ++second) {
-      links.push_back({first, second,
-                       LocalizeIn(localization, stages, sessions[first].map,
-                                  sessions[second].map, executor,
-                                  [&](const std::string& stage) {
-                                    return clock->Begin(
-                                        absl::StrFormat("%s, %d and %d", stage,
-                                                        first + 1, second + 1));
-                                  })});
-    }
-  }
-  return links;
+// Links sessions until all are connected, if they can be.
+std::vector<SessionLink> LinkSessions(const size_t num_sessions,
+                                      SessionLinker* const linker) {
+  linker->LinkMostAlike();
+  std::set<size_t> all;
+  for (size_t k = 0; k < num_sessions; ++k) all.insert(k);
+  linker->Connect(all);
+  return linker->links();
 }
 
 // Returns why the connected sessions cannot be merged, or an empty string.
@@ -353,14 +307,29 @@ void Conclude(MergingResult attempt,
   ExplainLeftOut(faults, result);
 }
 
+// The sessions of a group that are not left out.
+std::set<size_t> MembersLeft(const MergingResult& result, const size_t group,
+                             const std::map<size_t, std::string>& left_out) {
+  std::set<size_t> members;
+  for (size_t k = 0; k < result.sessions.size(); ++k) {
+    if (result.sessions[k].group == group && left_out.count(k) == 0) {
+      members.insert(k);
+    }
+  }
+  return members;
+}
+
 // Joins a group of connected sessions. While the map cannot be right, leaves
 // out the session at fault; if that does not help, the result is the first map
 // and its fault. The first of all sessions stays if trajectories are frozen.
 void JoinGroup(const size_t group, const bool has_frozen_trajectories,
-               SessionJoiner* const joiner, MergingResult* const result) {
+               SessionLinker* const linker, SessionJoiner* const joiner,
+               MergingResult* const result) {
   std::map<size_t, std::string> left_out;
   std::optional<MergingResult> first_attempt;
   while (true) {
+    linker->Connect(MembersLeft(*result, group, left_out));
+    result->links = linker->links();
     size_t first = group;
     while (left_out.count(first) > 0 ||
            result->sessions[first].group != group) {
@@ -387,7 +356,8 @@ void JoinGroup(const size_t group, const bool has_frozen_trajectories,
 }  // namespace
 
 absl::StatusOr<MergingResult> MergeSessions(
-    const FoldCheckOptions& options, const LocalizationOptions& localization,
+    const FoldCheckOptions& options, const SessionLinkOptions& session_links,
+    const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
     const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,
@@ -403,8 +373,9 @@ absl::StatusOr<MergingResult> MergeSessions(
   const absl::StatusOr<std::vector<Session>> sessions =
       ReadSessions(scan_places, stages, sources, describe, executor, &clock);
   if (!sessions.ok()) return sessions.status();
-  result.links =
-      LinkSessions(localization, stages, *sessions, executor, &clock);
+  SessionLinker linker(session_links, localization, stages, *sessions, executor,
+                       &clock);
+  result.links = LinkSessions(paths.size(), &linker);
   const std::vector<size_t> groups = GroupSessions(paths.size(), result.links);
   for (size_t k = 0; k < paths.size(); ++k) {
     result.sessions.push_back({paths[k], groups[k], {}, ""});
@@ -417,7 +388,7 @@ absl::StatusOr<MergingResult> MergeSessions(
     for (const Session& session : *sessions) pointers.push_back(&session);
     SessionJoiner joiner(options, stages, std::move(pointers),
                          frozen_trajectories, executor, &clock);
-    JoinGroup(group, !frozen_trajectories.empty(), &joiner, &result);
+    JoinGroup(group, !frozen_trajectories.empty(), &linker, &joiner, &result);
   } else {
     ExplainLeftOut({}, &result);
   }

@@ -17,16 +17,10 @@
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/apps/fold_check.h"
 #include "cartographer_sdf/apps/session.h"
+#include "cartographer_sdf/apps/session_links.h"
 #include "cartographer_sdf/pbstream/joined_map_file.h"
 
 namespace cartographer_sdf {
-
-// Result of localizing the second of two sessions in the first.
-struct SessionLink {
-  size_t first = 0;  // indices of sessions, first < second
-  size_t second = 0;
-  Localization localization;
-};
 
 struct MergedSession {
   std::string path;
@@ -40,7 +34,7 @@ struct MergedSession {
 
 struct MergingResult {
   std::vector<MergedSession> sessions;  // all, in the order given
-  std::vector<SessionLink> links;       // all pairs
+  std::vector<SessionLink> links;       // those that were compared
   // Of the sessions in the merged map, with their new numbers.
   std::vector<MapPart> parts;
   // As read, under the new numbers. Here, places made of scans are submaps.
@@ -58,7 +52,7 @@ struct MergingResult {
   std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
-// Finds the links between all sessions and the closures within each, and joins
+// Finds links between the sessions and the closures within each, and joins
 // the largest connected group, on ties the first. While the map would be folded
 // and more than two sessions are in it, leaves out the session that is most
 // likely at fault. The map frame is that of the first session that stays.
@@ -67,7 +61,8 @@ struct MergingResult {
 // DescribeSession. Fails if a file cannot be read, or if there is no such
 // trajectory.
 [[nodiscard]] absl::StatusOr<MergingResult> MergeSessions(
-    const FoldCheckOptions& options, const LocalizationOptions& localization,
+    const FoldCheckOptions& options, const SessionLinkOptions& session_links,
+    const LocalizationOptions& localization,
     const ScanPlaceOptions& scan_places, const LoopClosingOptions& stages,
     const std::vector<MapSource>& sources,
     const std::set<int>& frozen_trajectories, const Executor& executor,

@@ -404,6 +404,10 @@ inline void VisitOptions(OptionVisitor& visit, ScanSessionOptions& options) {
   visit("lost_after_scans", options.lost_after_scans);
 }
 
+inline void VisitOptions(OptionVisitor& visit, SessionLinkOptions& options) {
+  visit("min_num_links_per_session", options.min_num_links_per_session);
+}
+
 inline void VisitOptions(OptionVisitor& visit, FoldCheckOptions& options) {
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_folded_fraction", options.max_folded_fraction);
@@ -421,6 +425,7 @@ inline void VisitOptions(OptionVisitor& visit, Options& options) {
   visit("scan_places", options.scan_places);
   visit("scan_localization", options.scan_localization);
   visit("scan_session", options.scan_session);
+  visit("session_links", options.session_links);
   visit("fold_check", options.fold_check);
   visit("audit", options.audit);
   visit("report", options.report);

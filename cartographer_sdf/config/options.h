@@ -13,6 +13,7 @@
 #include "cartographer_sdf/apps/audit.h"
 #include "cartographer_sdf/apps/close_loops.h"
 #include "cartographer_sdf/apps/fold_check.h"
+#include "cartographer_sdf/apps/session_links.h"
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
 #include "cartographer_sdf/localization/scan_places.h"
@@ -30,6 +31,7 @@ struct Options {
   ScanPlaceOptions scan_places;
   ScanLocalizationOptions scan_localization;
   ScanSessionOptions scan_session;
+  SessionLinkOptions session_links;
   FoldCheckOptions fold_check;
   AuditOptions audit;
   ReportOptions report;

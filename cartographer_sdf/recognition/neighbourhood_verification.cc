@@ -210,26 +210,7 @@ class NeighbourhoodVerifier {
   [[nodiscard]] std::optional<Decision> Decide(const Task& task) const {
     const Place& reference = maps_.references.places->at(task.ids.first);
     const Place& query = maps_.queries.places->at(task.ids.second);
-    // A pair that was never matched needs rivals of its own.
-    std::vector<Rigid2> hypotheses;
-    if (task.match == nullptr) {
-      hypotheses = ProposePoses(match_options_, reference, query);
-    }
-    std::vector<Opinion> opinions;
-    for (VerifiedPose& verified :
-         VerifyPoses(match_options_.verification, reference.surface,
-                     query.surface, PosesOf(task), hypotheses)) {
-      Opinion opinion;
-      if (verified.score >= options_.min_pair_score) {
-        opinion.neighbourhood =
-            Measure({task.ids.first, task.ids.second,
-                     verified.T_reference_query, verified.score});
-      }
-      opinion.score = NeighbourhoodScore(options_, verified.score,
-                                         opinion.neighbourhood.evidence);
-      opinion.verified = std::move(verified);
-      opinions.push_back(std::move(opinion));
-    }
+    std::vector<Opinion> opinions = OpinionsOn(task, reference, query);
     if (opinions.empty()) return std::nullopt;
     std::stable_sort(
         opinions.begin(), opinions.end(),
@@ -250,6 +231,33 @@ class NeighbourhoodVerifier {
   }
 
  private:
+  // Verifies the poses of a task, each with its neighbourhood.
+  [[nodiscard]] std::vector<Opinion> OpinionsOn(const Task& task,
+                                                const Place& reference,
+                                                const Place& query) const {
+    // A pair that was never matched needs rivals of its own.
+    std::vector<Rigid2> hypotheses;
+    if (task.match == nullptr) {
+      hypotheses = ProposePoses(match_options_, reference, query);
+    }
+    std::vector<Opinion> opinions;
+    for (VerifiedPose& verified :
+         VerifyPoses(match_options_.verification, reference.surface,
+                     query.surface, PosesOf(task), hypotheses)) {
+      Opinion opinion;
+      if (verified.score >= options_.min_pair_score) {
+        opinion.neighbourhood =
+            Measure({task.ids.first, task.ids.second,
+                     verified.T_reference_query, verified.score});
+      }
+      opinion.score = NeighbourhoodScore(options_, verified.score,
+                                         opinion.neighbourhood.evidence);
+      opinion.verified = std::move(verified);
+      opinions.push_back(std::move(opinion));
+    }
+    return opinions;
+  }
+
   // Those of the tasks that leave a choice and that the budget affords.
   [[nodiscard]] std::vector<Task> Affordable(
       std::map<IdPair, Task>&& tasks,

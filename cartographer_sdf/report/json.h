@@ -63,7 +63,7 @@ template <typename T>
 // As of a scan; "localized" where the robot is located.
 [[nodiscard]] Json ToJson(const SessionAnswer& answer);
 
-// The outcome of each session, and of each pair of sessions.
+// The outcome of each session, and of each two that were compared.
 [[nodiscard]] Json ToJson(const MergingResult& result);
 
 }  // namespace cartographer_sdf

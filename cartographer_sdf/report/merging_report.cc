@@ -15,7 +15,7 @@
 namespace cartographer_sdf {
 namespace {
 
-// The outcome of each session and of each pair of sessions.
+// The outcome of each session and of each two that were compared.
 void JudgeMerging(const MergingResult& result,
                   const std::vector<std::string>& names,
                   Inspection* const inspection) {

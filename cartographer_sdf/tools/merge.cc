@@ -131,9 +131,9 @@ absl::Status RunMerge(RunRecord* const record) {
   const Options& options = task->options;
   StageProgress progress(record);
   const absl::StatusOr<MergingResult> result = MergeSessions(
-      options.fold_check, options.localization, options.scan_places,
-      options.loop_closing, *inputs, task->frozen_trajectories, task->executor,
-      progress.Callback(),
+      options.fold_check, options.session_links, options.localization,
+      options.scan_places, options.loop_closing, *inputs,
+      task->frozen_trajectories, task->executor, progress.Callback(),
       DescriberOfFlags(*task, SplitPaths(FLAGS_inputs), record));
   if (!result.ok()) return result.status();
   RecordMerging(*result, record);

@@ -577,7 +577,7 @@ class MergedMap:
         """In the order of the paths."""
     @property
     def links(self) -> List[SessionLink]:
-        """Of all pairs of sessions."""
+        """Of the pairs of sessions that were compared."""
     @property
     def closures(self) -> List[Closure]:
         """Within and between sessions; ids are those of the merged map."""

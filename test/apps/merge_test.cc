@@ -61,9 +61,10 @@ class MergingTest : public ::testing::Test {
     credulous.placement.min_score = 1.;
     FoldCheckOptions strict;
     strict.max_contradiction_ratio = 0.05;
-    absl::StatusOr<MergingResult> result = MergeSessions(
-        strict, credulous, ScanPlaceOptions(), LoopClosingOptions(),
-        {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
+    absl::StatusOr<MergingResult> result =
+        MergeSessions(strict, SessionLinkOptions(), credulous,
+                      ScanPlaceOptions(), LoopClosingOptions(),
+                      {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
     CHECK(result.ok()) << result.status();
     return *std::move(result);
   }

@@ -70,8 +70,9 @@ class RelocalizationService {
 absl::StatusOr<MergingResult> Merge(const std::vector<std::string>& maps,
                                     const std::string& output) {
   absl::StatusOr<MergingResult> result = MergeSessions(
-      FoldCheckOptions(), LocalizationOptions(), ScanPlaceOptions(),
-      LoopClosingOptions(), {maps.begin(), maps.end()}, {}, &RunInOrder);
+      FoldCheckOptions(), SessionLinkOptions(), LocalizationOptions(),
+      ScanPlaceOptions(), LoopClosingOptions(), {maps.begin(), maps.end()}, {},
+      &RunInOrder);
   if (!result.ok()) return result.status();
   if (!result->refusal.empty()) {
     return absl::FailedPreconditionError(result->refusal);

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // No option of localising, by matches and by a scan, of drawing places from
-// scans and of looking for folds in merged maps is without effect.
+// scans, of choosing sessions to compare and of looking for folds in merged
+// maps is without effect.
 
 #include <algorithm>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "cartographer_sdf/apps/fold_check.h"
+#include "cartographer_sdf/apps/session_links.h"
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/localization/scan_localizer.h"
@@ -315,6 +317,23 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfTheFoldCheckIsWithout) {
   FoldCheckOptions base;
   base.max_folded_fraction = 0.3;
   EXPECT_EQ(testing::OptionsWithoutEffect(base, scenarios), "");
+}
+
+TEST(OptionEffectsTest, OfLinksBetweenSessions) {
+  const std::vector<testing::Scenario<SessionLinkOptions>> scenarios = {
+      {"", [](const SessionLinkOptions& options) {
+         const std::vector<Session> sessions(7);
+         const LocalizationOptions localization;
+         const LoopClosingOptions stages;
+         const Executor executor = MakeExecutor(1);
+         std::vector<std::pair<std::string, double>> seconds;
+         StageClock clock({}, &seconds);
+         SessionLinker linker(options, localization, stages, sessions, executor,
+                              &clock);
+         linker.LinkMostAlike();
+         return std::to_string(linker.links().size());
+       }}};
+  EXPECT_EQ(testing::OptionsWithoutEffect(SessionLinkOptions(), scenarios), "");
 }
 
 }  // namespace

@@ -372,7 +372,7 @@ class UntestedOptions : public OptionVisitor {
         "loop_closing.closing",
         // localization_option_effects_test.cc
         "localization", "scan_places", "scan_localization", "scan_session",
-        "fold_check",
+        "session_links", "fold_check",
         // audit_option_effects_test.cc
         "audit", "report"};
     if (tested.count(path) > 0) return false;
