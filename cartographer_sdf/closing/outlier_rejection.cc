@@ -4,6 +4,9 @@
 #include "cartographer_sdf/closing/outlier_rejection.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "glog/logging.h"
 
@@ -59,22 +62,49 @@ void Continue(const OptimizationSummary& continued,
   summary->message = continued.message;
 }
 
-// Removes the closures that the graph contradicts most; returns false if there
-// are none.
+// For each trajectory with constraints, the lowest of those that it is
+// connected with.
+std::map<int, int> ConnectedTrajectories(const PoseGraph& pose_graph) {
+  std::set<std::pair<int, int>> connections;
+  for (const Constraint& constraint : pose_graph.constraints) {
+    connections.emplace(constraint.submap.trajectory,
+                        constraint.node.trajectory);
+  }
+  std::map<int, int> connected;
+  for (const auto& [a, b] : connections) {
+    const int root_a = connected.emplace(a, a).first->second;
+    const int root_b = connected.emplace(b, b).first->second;
+    for (auto& [trajectory, root] : connected) {
+      if (root == std::max(root_a, root_b)) root = std::min(root_a, root_b);
+    }
+  }
+  return connected;
+}
+
+// Removes the closures that the graph contradicts most, in each part of it that
+// is connected: they strain nothing in another. Returns false if there are
+// none.
 bool RejectWorst(const OutlierRejectionOptions& options,
+                 const std::map<int, int>& connected,
                  std::vector<Closure>* const closures) {
-  std::vector<std::optional<ConstraintError>> errors;
-  for (const Closure& closure : *closures) {
-    errors.push_back(closure.status == ClosureStatus::kInGraph
-                         ? std::make_optional(closure.graph_error)
-                         : std::nullopt);
+  std::map<int, std::vector<std::optional<ConstraintError>>> errors_of_parts;
+  for (size_t k = 0; k < closures->size(); ++k) {
+    const Closure& closure = (*closures)[k];
+    if (closure.status != ClosureStatus::kInGraph) continue;
+    auto& errors =
+        errors_of_parts[connected.at(closure.match.pair.reference.trajectory)];
+    errors.resize(closures->size());
+    errors[k] = closure.graph_error;
   }
-  const std::vector<size_t> outliers = FindOutliers(options, errors);
-  for (const size_t k : outliers) {
-    (*closures)[k].status = ClosureStatus::kOutlier;
-    (*closures)[k].constraints.clear();
+  bool has_outliers = false;
+  for (const auto& [part, errors] : errors_of_parts) {
+    for (const size_t k : FindOutliers(options, errors)) {
+      (*closures)[k].status = ClosureStatus::kOutlier;
+      (*closures)[k].constraints.clear();
+      has_outliers = true;
+    }
   }
-  return !outliers.empty();
+  return has_outliers;
 }
 
 }  // namespace
@@ -114,6 +144,8 @@ OptimizedGraph OptimizeAndRejectOutliers(
     const std::set<int>& frozen_trajectories, const PoseGraph& pose_graph,
     std::vector<Closure>* const closures, const ProgressCallback& on_progress) {
   CHECK_EQ(Validate(options), "");
+  const std::map<int, int> connected =
+      ConnectedTrajectories(WithClosures(pose_graph, *closures));
   OptimizedGraph result;
   for (int round = 0;; ++round) {
     // Starts from the given poses each time, so that removed closures leave no
@@ -133,12 +165,12 @@ OptimizedGraph OptimizeAndRejectOutliers(
     // Nothing may be removed after the last round, as the graph would not be
     // optimised again.
     const bool is_last = round >= options.max_num_rounds;
-    if (!is_last && RejectWorst(options, closures)) continue;
+    if (!is_last && RejectWorst(options, connected, closures)) continue;
     Continue(Optimize(optimization, frozen_trajectories, &result.pose_graph,
                       kSettlingRun),
              &result.optimizations.back());
     MeasureErrors(result.pose_graph, closures);
-    if (is_last || !RejectWorst(options, closures)) return result;
+    if (is_last || !RejectWorst(options, connected, closures)) return result;
   }
 }
 

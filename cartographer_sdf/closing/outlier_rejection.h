@@ -44,7 +44,7 @@ struct OptimizedGraph {
 };
 
 // Sets status, constraints and graph error of the closures that are in the
-// graph.
+// graph. In each round, the worst of each connected part of the graph go.
 [[nodiscard]] OptimizedGraph OptimizeAndRejectOutliers(
     const OutlierRejectionOptions& options,
     const OptimizationOptions& optimization,

@@ -146,6 +146,52 @@ TEST(OptimizeAndRejectOutliersTest, SeveralFalseOnesGo) {
   ExpectIdentical(result.pose_graph, expected.pose_graph);
 }
 
+// The same map twice, unconnected.
+PoseGraph Twice(const PoseGraph& one) {
+  PoseGraph two = one;
+  for (const auto& [id, pose] : one.submap_poses) {
+    two.submap_poses[{1, id.index}] = pose;
+  }
+  for (const auto& [id, node] : one.nodes) two.nodes[{1, id.index}] = node;
+  for (Constraint constraint : one.constraints) {
+    constraint.submap.trajectory = constraint.node.trajectory = 1;
+    two.constraints.push_back(constraint);
+  }
+  return two;
+}
+
+Closure InSecondTrajectory(Closure closure) {
+  closure.match.pair.reference.trajectory = 1;
+  closure.match.pair.query.trajectory = 1;
+  for (Constraint& constraint : closure.constraints) {
+    constraint.submap.trajectory = constraint.node.trajectory = 1;
+  }
+  return closure;
+}
+
+TEST(OptimizeAndRejectOutliersTest, UnconnectedMapsNeedNoMoreRounds) {
+  const testing::RoundTrip map = MakeMap();
+  std::vector<Closure> closures = TrueClosures(map.truth);
+  const size_t num_true = closures.size();
+  for (size_t k = 0; k < num_true; ++k) {
+    closures.push_back(InSecondTrajectory(closures[k]));
+  }
+  closures.push_back(MakeClosure(map.truth, 7, 27, Rigid2(10., -4., 0.3)));
+  closures.push_back(
+      InSecondTrajectory(MakeClosure(map.truth, 7, 27, Rigid2(2., 0., 0.))));
+  // What is worse in one map says nothing of the other.
+  OutlierRejectionOptions options;
+  options.max_num_rounds = 1;
+  const OptimizedGraph result = OptimizeAndRejectOutliers(
+      options, OptimizationOptions(), {}, Twice(map.open_loop), &closures);
+  EXPECT_THAT(result.optimizations, SizeIs(2));
+  for (size_t k = 0; k < closures.size(); ++k) {
+    EXPECT_EQ(closures[k].status, k < 2 * num_true ? ClosureStatus::kInGraph
+                                                   : ClosureStatus::kOutlier)
+        << k;
+  }
+}
+
 TEST(OptimizeAndRejectOutliersTest, AsGivenWithoutClosures) {
   const testing::RoundTrip map = MakeMap();
   std::vector<Closure> closures;
