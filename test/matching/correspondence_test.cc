@@ -244,9 +244,9 @@ TEST(CorrespondenceOptionsTest, ValidateNamesTheOption) {
   EXPECT_THAT(error(&CorrespondenceOptions::max_clearance_difference_meters,
                     std::nan("")),
               HasSubstr("max_clearance_difference_meters"));
-  EXPECT_THAT(error(&CorrespondenceOptions::kinds,
-                    KeypointKinds{false, false, false}),
-              HasSubstr("maxima"));
+  EXPECT_THAT(
+      error(&CorrespondenceOptions::kinds, KeypointKinds{false, false, false}),
+      HasSubstr("maxima"));
 }
 
 }  // namespace
