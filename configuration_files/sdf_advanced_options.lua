@@ -74,6 +74,13 @@ SDF_GLOBAL_CONSTRAINTS = {
           same_kind_only = true,
           -- [m] Features whose distance to walls differs by more do not match.
           max_clearance_difference_meters = 0.2,
+          -- Kinds of keypoints that match: maxima and saddles in free space,
+          -- minima on walls.
+          kinds = {
+            maxima = true,
+            minima = true,
+            saddles = true,
+          },
         },
         -- Candidate poses from the votes of pairs of correspondences.
         hypotheses = {
@@ -211,6 +218,12 @@ SDF_GLOBAL_CONSTRAINTS = {
           -- A query also looks into the next bin where it lies within this
           -- fraction of a bin from it. Larger: more recall, slower.
           border_fraction = 0.3,
+          -- Kinds of keypoints that are paired, as in correspondence.kinds.
+          kinds = {
+            maxima = true,
+            minima = true,
+            saddles = true,
+          },
         },
         -- Partners with which each keypoint is stored, and sought. Larger: more
         -- recall, more memory, slower.

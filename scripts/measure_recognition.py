@@ -16,52 +16,13 @@ import concurrent.futures
 import csv
 import itertools
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
-import typing
 
-SOURCE_DIR = pathlib.Path(__file__).resolve().parent.parent
+from measuring import (BETWEEN, DATA_DIR, PROGRAM, WITHIN, Failure, numbers_of,
+                       run)
 
-
-class Set(typing.NamedTuple):
-    name: str
-    map: str
-    truth: str
-    query: str = ""
-    query_truth: str = ""
-    relations: str = ""
-
-
-def within(name, map_name="", relations=""):
-    map_name = map_name or name
-    return Set(name.split("/")[-1], f"{map_name}.pbstream", f"{name}.truth.csv",
-               relations=relations)
-
-
-def between(first, second):
-    short = [name.split("/")[-1] for name in (first, second)]
-    return Set(" x ".join(short), f"{first}.pbstream", f"{first}.truth.csv",
-               f"{second}.pbstream", f"{second}.truth.csv")
-
-
-WITHIN = [
-    within("intel", "intel_open_loop", "intel.relations"),
-    within("aces", "aces_open_loop"),
-    within("mit_killian", "mit_killian_open_loop", "mit_killian.relations"),
-    *map(within, (
-        "willow_1", "willow_2", "fr079", "belgioioso", "fhw_1", "fhw_2",
-        "orebro", "freiburg_campus", "tsc_2016", "tsc_2017", "labc_bare1",
-        "labc_furn", "labc_d3a", "officeb_bare", "officec_R", "officec_L",
-        "field/floor_4", "field/floor_6", "field/twins3_1", "field/twins3_2")),
-]
-BETWEEN = [between(*names) for names in (
-    ("willow_1", "willow_2"), ("fhw_1", "fhw_2"), ("tsc_2016", "tsc_2017"),
-    ("labc_bare1", "labc_furn"), ("labc_bare1", "labc_d3a"),
-    ("officec_R", "officec_L"), ("officec_L", "officec_R"),
-    ("field/floor_4", "field/floor_6"), ("field/twins3_1", "field/twins3_2"))]
 # One map of each building: whatever is accepted between two of them is wrong.
 BUILDINGS = (
     "intel_open_loop", "aces_open_loop", "mit_killian_open_loop", "willow_1",
@@ -70,28 +31,6 @@ BUILDINGS = (
     "field/hall_office_1", "field/bare_corner", "field/arena_2",
     "field/track_hall_1")
 STRANGERS = list(itertools.combinations(BUILDINGS, 2))
-
-
-def run(program, *arguments):
-    """(standard output, CPU seconds); ends this program where it fails."""
-    with tempfile.TemporaryFile() as errors:
-        process = subprocess.Popen([program, *map(str, arguments)], text=True,
-                                   stdout=subprocess.PIPE, stderr=errors)
-        output = process.stdout.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode != 0:
-            errors.seek(0)
-            sys.exit(f"{program} {' '.join(map(str, arguments))}:\n"
-                     f"{errors.read().decode(errors='replace')}")
-    return output, usage.ru_utime + usage.ru_stime
-
-
-def numbers_of(path):
-    """{(subject, quantity): number} of a CSV file of `evaluate`."""
-    with open(path, encoding="utf-8") as file:
-        return {(row["subject"], row["quantity"]): float(row["value"])
-                for row in csv.DictReader(file)}
 
 
 def accepted_positives(matches, labels):
@@ -182,11 +121,10 @@ def measure_close_loops(program, data, entry):
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--program", type=pathlib.Path,
-                        default=SOURCE_DIR / "build" / "cartographer_sdf")
+                        default=PROGRAM)
     parser.add_argument("--baseline", type=pathlib.Path,
                         help="another program to run on the same sets")
-    parser.add_argument("--data", type=pathlib.Path,
-                        default=SOURCE_DIR.parent / "shared" / "data")
+    parser.add_argument("--data", type=pathlib.Path, default=DATA_DIR)
     parser.add_argument("--jobs", type=int, default=1,
                         help="sets that are measured at once")
     parser.add_argument("--only", default="",
@@ -247,4 +185,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failure as failure:
+        sys.exit(f"measure_recognition.py: {failure}")

@@ -44,6 +44,12 @@ inline void VisitOptions(OptionVisitor& visit, PlaceOptions& options) {
   visit("max_field_megabytes", options.max_field_megabytes);
 }
 
+inline void VisitOptions(OptionVisitor& visit, KeypointKinds& kinds) {
+  visit("maxima", kinds.maxima);
+  visit("minima", kinds.minima);
+  visit("saddles", kinds.saddles);
+}
+
 inline void VisitOptions(OptionVisitor& visit, CorrespondenceOptions& options) {
   visit("num_neighbours", options.num_neighbours);
   visit("use_ratio_test", options.use_ratio_test);
@@ -51,6 +57,7 @@ inline void VisitOptions(OptionVisitor& visit, CorrespondenceOptions& options) {
   visit("same_kind_only", options.same_kind_only);
   visit("max_clearance_difference_meters",
         options.max_clearance_difference_meters);
+  visit("kinds", options.kinds);
 }
 
 inline void VisitOptions(OptionVisitor& visit, PoseBinOptions& options) {
@@ -169,6 +176,7 @@ inline void VisitOptions(OptionVisitor& visit, KeypointPairOptions& options) {
   visit("length_bin_meters", options.length_bin_meters);
   visit("orientation_bin", options.orientation_bin);
   visit("border_fraction", options.border_fraction);
+  visit("kinds", options.kinds);
 }
 
 inline void VisitOptions(OptionVisitor& visit, RetrievalOptions& options) {

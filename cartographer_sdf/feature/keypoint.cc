@@ -345,6 +345,25 @@ std::string Validate(const KeypointOptions& options) {
   return "";
 }
 
+std::string Validate(const KeypointKinds& kinds) {
+  if (!kinds.maxima && !kinds.minima && !kinds.saddles) {
+    return "maxima, minima or saddles must be true";
+  }
+  return "";
+}
+
+bool Contains(const KeypointKinds& kinds, const KeypointKind kind) {
+  switch (kind) {
+    case KeypointKind::kMaximum:
+      return kinds.maxima;
+    case KeypointKind::kMinimum:
+      return kinds.minima;
+    case KeypointKind::kSaddle:
+      return kinds.saddles;
+  }
+  LOG(FATAL) << "no such kind";
+}
+
 ArrayXXf SmoothField(const DistanceField& field, const double sigma_cells) {
   const CellRuns runs =
       CellRuns::All(field.distance.rows(), field.distance.cols());

@@ -41,6 +41,15 @@ struct KeypointOptions {
 enum class KeypointKind { kMaximum, kMinimum, kSaddle };
 constexpr int kNumKeypointKinds = 3;
 
+// The kinds that a stage uses, to measure what each is worth.
+struct KeypointKinds {
+  bool maxima = true;
+  bool minima = true;
+  bool saddles = true;
+};
+[[nodiscard]] std::string Validate(const KeypointKinds& kinds);
+[[nodiscard]] bool Contains(const KeypointKinds& kinds, KeypointKind kind);
+
 struct Keypoint {
   Eigen::Vector2d position;  // submap frame [m], sub-cell
   double clearance;          // signed distance to the nearest wall [m]

@@ -13,15 +13,15 @@
 namespace cartographer_sdf {
 namespace {
 
-// Where kinds may mix, all count as of the first kind.
+// Of the kinds in use. Where they may mix, all count as of the first kind.
 std::array<std::vector<int>, kNumKeypointKinds> IndicesByKind(
     const CorrespondenceOptions& options, const FeatureSet& set) {
   std::array<std::vector<int>, kNumKeypointKinds> indices;
   for (size_t k = 0; k < set.features.size(); ++k) {
-    const int kind = options.same_kind_only
-                         ? static_cast<int>(set.features[k].keypoint.kind)
-                         : 0;
-    indices[kind].push_back(static_cast<int>(k));
+    const KeypointKind kind = set.features[k].keypoint.kind;
+    if (!Contains(options.kinds, kind)) continue;
+    indices[options.same_kind_only ? static_cast<int>(kind) : 0].push_back(
+        static_cast<int>(k));
   }
   return indices;
 }
@@ -112,7 +112,7 @@ std::string Validate(const CorrespondenceOptions& options) {
   if (!(options.max_clearance_difference_meters > 0.)) {
     return "max_clearance_difference_meters must be positive";
   }
-  return "";
+  return Validate(options.kinds);
 }
 
 std::vector<Correspondence> FindCorrespondences(

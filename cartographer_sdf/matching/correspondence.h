@@ -25,6 +25,8 @@ struct CorrespondenceOptions {
   bool same_kind_only = true;
   // Features whose clearance differs by more than this do not correspond [m].
   double max_clearance_difference_meters = 0.2;
+  // Features of other kinds do not correspond.
+  KeypointKinds kinds;
 };
 [[nodiscard]] std::string Validate(const CorrespondenceOptions& options);
 

@@ -106,6 +106,17 @@ class PairQuantizer {
   const int num_orientations_;
 };
 
+std::vector<int> IndicesOf(const KeypointKinds& kinds,
+                           const std::vector<Feature>& features) {
+  std::vector<int> indices;
+  for (size_t k = 0; k < features.size(); ++k) {
+    if (Contains(kinds, features[k].keypoint.kind)) {
+      indices.push_back(static_cast<int>(k));
+    }
+  }
+  return indices;
+}
+
 using IndexPair = std::pair<int, int>;
 
 // The nearest partners of each keypoint within reach; each pair once, the lower
@@ -117,10 +128,10 @@ std::vector<IndexPair> NearestPartners(const KeypointPairOptions& options,
   const double max_squared = std::pow(options.max_length_meters, 2);
   std::vector<IndexPair> pairs;
   std::vector<std::pair<double, int>> partners;
-  const int count = static_cast<int>(features.size());
-  for (int k = 0; k < count; ++k) {
+  const std::vector<int> indices = IndicesOf(options.kinds, features);
+  for (const int k : indices) {
     partners.clear();
-    for (int other = 0; other < count; ++other) {
+    for (const int other : indices) {
       const double squared =
           (features[other].keypoint.position - features[k].keypoint.position)
               .squaredNorm();
@@ -217,7 +228,7 @@ std::string Validate(const KeypointPairOptions& options) {
   if (!(options.border_fraction >= 0. && options.border_fraction <= 0.5)) {
     return "border_fraction must lie between 0 and 0.5";
   }
-  return "";
+  return Validate(options.kinds);
 }
 
 std::vector<KeypointPair> PairsToStore(const KeypointPairOptions& options,

@@ -31,6 +31,8 @@ struct KeypointPairOptions {
   // A query also looks into the next bin where it lies within this fraction of
   // a bin from it. Larger: more recall, slower.
   double border_fraction = 0.3;
+  // Keypoints of other kinds are not paired.
+  KeypointKinds kinds;
 };
 [[nodiscard]] std::string Validate(const KeypointPairOptions& options);
 

@@ -39,6 +39,9 @@ DEFINE_double(lidar_range, 20.,
 DEFINE_double(
     lidar_field_of_view, 270.,
     "Field of view of the lidar, centred on the direction of travel [deg].");
+DEFINE_int32(lidar_beams, 360, "Number of beams of the lidar.");
+DEFINE_double(lidar_noise, 0.015,
+              "Standard deviation of the lidar's ranges [m].");
 DEFINE_double(length, 360., "Length of the drive [m].");
 DEFINE_uint32(seed, 1, "Random seed.");
 
@@ -66,6 +69,8 @@ absl::Status WriteMapOfFlags(RunRecord* const record) {
   options.drive.length = FLAGS_length;
   options.lidar.glass_echo = FLAGS_glass_echo;
   options.lidar.max_range = FLAGS_lidar_range;
+  options.lidar.num_beams = FLAGS_lidar_beams;
+  options.lidar.range_noise = FLAGS_lidar_noise;
   options.lidar.field_of_view = FLAGS_lidar_field_of_view * M_PI / 180.;
   options.people.num_walking = FLAGS_walking_people;
   options.people.num_standing = FLAGS_standing_people;
@@ -122,6 +127,8 @@ Subcommand SimulateSubcommand() {
        "standing_people",
        "lidar_range",
        "lidar_field_of_view",
+       "lidar_beams",
+       "lidar_noise",
        "length",
        {"seed",
         FileUse::kNone,

@@ -105,6 +105,25 @@ TEST(FindCorrespondencesTest, EqualsBruteForce) {
   }
 }
 
+TEST(FindCorrespondencesTest, OnlyOfTheKindsInUse) {
+  std::mt19937 engine(42);
+  const FeatureSet reference = RandomFeatures(150, 10., 18, &engine);
+  const FeatureSet query = RandomFeatures(120, 10., 18, &engine);
+  CorrespondenceOptions options;
+  const auto all = FindCorrespondences(options, reference, query);
+  options.kinds.maxima = false;
+  options.kinds.saddles = false;
+  std::vector<Correspondence> minima;
+  for (const Correspondence& c : all) {
+    if (query.features[c.query].keypoint.kind == KeypointKind::kMinimum) {
+      minima.push_back(c);
+    }
+  }
+  EXPECT_GT(minima.size(), 50u);
+  EXPECT_LT(minima.size(), all.size());
+  ExpectEqual(FindCorrespondences(options, reference, query), minima);
+}
+
 TEST(FindCorrespondencesTest, KindsMayMixOnRequest) {
   std::mt19937 engine(42);
   FeatureSet reference = RandomFeatures(150, 10., 18, &engine);
@@ -225,6 +244,9 @@ TEST(CorrespondenceOptionsTest, ValidateNamesTheOption) {
   EXPECT_THAT(error(&CorrespondenceOptions::max_clearance_difference_meters,
                     std::nan("")),
               HasSubstr("max_clearance_difference_meters"));
+  EXPECT_THAT(
+      error(&CorrespondenceOptions::kinds, KeypointKinds{false, false, false}),
+      HasSubstr("maxima"));
 }
 
 }  // namespace

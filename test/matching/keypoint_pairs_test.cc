@@ -135,6 +135,23 @@ TEST(KeypointPairsTest, OfTheNearestAndStrongest) {
   EXPECT_THAT(PairsToStore(near, 3, kNoLimit, set), IsEmpty());
 }
 
+TEST(KeypointPairsTest, OnlyOfTheKindsInUse) {
+  FeatureSet set;
+  for (const double x : {0., 2., 4.}) {
+    set.features.push_back(MakeFeature(x, 0., 0.5, 0.));
+  }
+  set.features[0].keypoint.kind = KeypointKind::kMinimum;
+  set.features[1].keypoint.kind = KeypointKind::kMaximum;
+  set.features[2].keypoint.kind = KeypointKind::kMinimum;
+  KeypointPairOptions options;
+  options.kinds.maxima = false;
+  const auto pairs = PairsToStore(options, 3, kNoLimit, set);
+  ASSERT_THAT(pairs, SizeIs(1));
+  EXPECT_NEAR(pairs[0].middle.x(), 2., 1e-6);
+  options.kinds.minima = false;
+  EXPECT_THAT(PairsToSeek(options, 3, kNoLimit, set), IsEmpty());
+}
+
 TEST(KeypointPairOptionsTest, ValidateNamesTheOption) {
   EXPECT_EQ(Validate(KeypointPairOptions()), "");
   const auto error = [](double KeypointPairOptions::*member,
@@ -151,6 +168,9 @@ TEST(KeypointPairOptionsTest, ValidateNamesTheOption) {
               HasSubstr("orientation_bin"));
   EXPECT_THAT(error(&KeypointPairOptions::border_fraction, -0.1),
               HasSubstr("border_fraction"));
+  KeypointPairOptions none;
+  none.kinds = {false, false, false};
+  EXPECT_THAT(Validate(none), HasSubstr("maxima"));
 }
 
 }  // namespace

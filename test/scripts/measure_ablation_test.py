@@ -18,6 +18,8 @@ import measure_ablation  # noqa: E402
 
 PROGRAM = None
 IDS = ",".join(measure_ablation.IDS)
+NUMBERS = {"positives": 4, "recall_p1": 0.5, "recall_p99": 0.75,
+           "accepted_recall": 0.25, "accepted_wrong": 7, "cpu": 2.}
 
 
 class MeasureAblationTest(unittest.TestCase):
@@ -31,10 +33,28 @@ class MeasureAblationTest(unittest.TestCase):
         measure_ablation.check_configuration(PROGRAM, self.directory, variant)
 
     def test_every_variant_fits_the_options(self):
-        for variant in measure_ablation.VARIANTS:
+        for study in measure_ablation.STUDIES.values():
+            for variant in study.variants:
+                self.check(variant)
+            names = [v.name for v in study.variants]
+            self.assertEqual(len(names), len(set(names)))
+
+    def test_variants_share_candidates_unless_retrieval_differs(self):
+        variants = measure_ablation.KEYPOINT_VARIANTS
+        candidates = measure_ablation.candidates_of(variants)
+        for variant in {v.name: v for v in candidates.values()}.values():
             self.check(variant)
-        names = [v.name for v in measure_ablation.VARIANTS]
-        self.assertEqual(len(names), len(set(names)))
+        self.assertIs(candidates["no_maxima_matching"], candidates["shipped"])
+        self.assertIs(candidates["no_maxima_retrieval"],
+                      candidates["no_maxima"])
+        self.assertIsNot(candidates["no_maxima"], candidates["shipped"])
+
+    def test_each_set_is_in_one_group(self):
+        names = [name for group in measure_ablation.KEYPOINT_SETS.values()
+                 for name in group]
+        self.assertEqual(sorted(names),
+                         sorted({*measure_ablation.RECORDED,
+                                 *measure_ablation.simulated_sets.PLACES}))
 
     def test_overrides_that_do_not_fit_are_told(self):
         for overrides in ("place.descriptor.no_such_option = 1",
@@ -54,19 +74,33 @@ class MeasureAblationTest(unittest.TestCase):
                           "0,1,0,7,unlikely"])
 
     def test_reports_ratios_of_time_and_no_counts_that_do_not_compare(self):
-        variants = [v for v in measure_ablation.VARIANTS
+        variants = [v for v in measure_ablation.STAGE_VARIANTS
                     if v.name in ("shipped", "wall_evidence_as_score")]
-        numbers = {"recall_p1": 0.5, "recall_p99": 0.75,
-                   "accepted_recall": 0.25, "accepted_wrong": 7, "cpu": 2.}
         text = measure_ablation.report(
-            ["aces"], variants,
-            {("aces", "shipped"): numbers,
-             ("aces", "wall_evidence_as_score"): {**numbers, "cpu": 5.}}, 2)
+            measure_ablation.STUDIES["stages"], variants,
+            {"aces": {"shipped": NUMBERS,
+                      "wall_evidence_as_score": {**NUMBERS, "cpu": 5.}}}, 2)
         rows = [line for line in text.splitlines()
                 if line.startswith("| wall_evidence_as_score | ")]
         self.assertEqual([row.split(" | ")[1].rstrip(" |") for row in rows[1:]],
-                         ["0.500", "0.750", "-", "-", "2.50"])
+                         ["0.500", "0.750", "-", "-", "2.500"])
         self.assertIn("| shipped | 7 |", text)
+
+    def test_pools_positives_and_puts_the_worst_set_first(self):
+        variants = [v for v in measure_ablation.KEYPOINT_VARIANTS
+                    if v.name in ("shipped", "walls_only")]
+        few = {**NUMBERS, "positives": 10, "candidate_recall": 1.}
+        many = {**few, "positives": 30, "accepted_recall": 0.75}
+        text = measure_ablation.report(
+            measure_ablation.STUDIES["keypoints"], variants,
+            {"open_hall_1": {"shipped": many, "walls_only": many},
+             "fhw_1": {"shipped": many,
+                       "walls_only": {**few, "accepted_recall": 0.25}}}, 1)
+        self.assertIn("| variant | halls | largest loss | largest gain |", text)
+        self.assertIn(
+            "| walls_only | 0.625 | fhw_1 0.750 to 0.250 | - |", text)
+        self.assertLess(text.index("| fhw_1, 30 |"),
+                        text.index("| open_hall_1, 30 |"))
 
     def test_chooses_in_the_order_of_the_table(self):
         self.assertEqual(measure_ablation.choose("x", "c,a", ["a", "b", "c"]),
