@@ -65,41 +65,50 @@ unity=ON
 options=()
 [[ -f "${BUILD_DIR}/CMakeCache.txt" ]] || options+=(-G Ninja)
 cmake -S . -B "${BUILD_DIR}" "${options[@]}" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release \
-  "-DCMAKE_CXX_FLAGS_RELEASE=-O1" -DCARTOGRAPHER_SDF_WARNINGS_AS_ERRORS=ON -DCARTOGRAPHER_SDF_UNITY_BUILD="${unity}" \
-  -DCARTOGRAPHER_SDF_BUILD_TESTS=ON -DCARTOGRAPHER_SDF_BUILD_PYTHON=ON >/dev/null
-cmake --build "${BUILD_DIR}" --target cartographer_sdf_proto --parallel "${JOBS}" >/dev/null
+  -DCARTOGRAPHER_SDF_WARNINGS_AS_ERRORS=ON -DCARTOGRAPHER_SDF_UNITY_BUILD="${unity}" \
+  -DCARTOGRAPHER_SDF_BUILD_TESTS=ON -DCARTOGRAPHER_SDF_BUILD_BENCHMARKS=ON -DCARTOGRAPHER_SDF_BUILD_FUZZERS=ON \
+  -DCARTOGRAPHER_SDF_BUILD_PYTHON=ON >/dev/null
+ninja -C "${BUILD_DIR}" -j "${JOBS}" cartographer_sdf_proto generated/inspector_template.cc >/dev/null
+# With the sources joined, as the analyser is blind to those that a file includes.
+JOINED_DIR="${BUILD_DIR}/joined"
+rm -rf "${JOINED_DIR}"
+scripts/join_sources.py "${BUILD_DIR}" "${JOINED_DIR}"
 
-# What is compiled of the files, and its objects, a line each.
+# What is compiled of the files: with "file", the file, else the command that
+# looks at it without making an object, each ended by a zero byte.
 compiled() {
-  python3 - "${BUILD_DIR}/compile_commands.json" "${SOURCE_DIR}" "${unity}" "${files[@]}" <<'END'
+  python3 - "${JOINED_DIR}/compile_commands.json" "${SOURCE_DIR}" "$1" "${files[@]}" <<'END'
 import json, os, sys
-commands, source, unity, files = sys.argv[1], sys.argv[2], sys.argv[3], set(sys.argv[4:])
+commands, source, what, files = sys.argv[1], sys.argv[2], sys.argv[3], set(sys.argv[4:])
+joined, seen = os.path.dirname(os.path.abspath(commands)), set()
 for entry in json.load(open(commands)):
     file = entry["file"]
-    if os.path.relpath(file, source) in files or (unity == "ON" and "/Unity/" in file):
-        words = entry["command"].split()
-        print(file, words[words.index("-o") + 1])
+    if os.path.dirname(file) != joined and os.path.relpath(file, source) not in files or file in seen:
+        continue
+    seen.add(file)
+    print(file if what == "file" else f"cd '{entry['directory']}' && {entry['command']} -fsyntax-only", end="\0")
 END
+}
+# The findings of a log, once each, with places in the sources.
+findings() {
+  grep -E ': (warning|error):' "$1" | scripts/join_sources.py --name "${JOINED_DIR}" | sort -u
 }
 
 failed=()
 if wants clang; then
   step "clang: -Wall -Wextra -Wconversion -Werror"
-  # The objects alone; nothing is linked or run.
-  mapfile -t objects < <(compiled | cut -d ' ' -f 2)
-  ninja -C "${BUILD_DIR}" -j "${JOBS}" -k 0 "${objects[@]}" >"${BUILD_DIR}/clang.log" 2>&1 || failed+=(clang)
-  grep -E ': (warning|error):' "${BUILD_DIR}/clang.log" | sort -u || true
+  compiled command | xargs -0 -n 1 -P "${JOBS}" bash -c >"${BUILD_DIR}/clang.log" 2>&1 || failed+=(clang)
+  findings "${BUILD_DIR}/clang.log" || true
 fi
 if wants tidy; then
   step "clang-tidy"
-  # Sources that a file of several includes count as headers, and may declare
-  # what is defined before them.
-  compiled | cut -d ' ' -f 1 |
-    xargs -n 1 -P "${JOBS}" clang-tidy -p "${BUILD_DIR}" --config-file=.clang-tidy --quiet \
-      --warnings-as-errors='*' --checks=-bugprone-suspicious-include,-readability-redundant-declaration \
+  # A source may declare what is defined before it in the joined file.
+  compiled file |
+    xargs -0 -n 1 -P "${JOBS}" clang-tidy -p "${JOINED_DIR}" --config-file=.clang-tidy --quiet \
+      --warnings-as-errors='*' --checks=-readability-redundant-declaration \
       --header-filter="${SOURCE_DIR}/(cartographer_sdf|test|python)/" \
-      >"${BUILD_DIR}/tidy.log" 2>/dev/null || failed+=(clang-tidy)
-  grep -E ': (warning|error):' "${BUILD_DIR}/tidy.log" | sort -u || true
+      >"${BUILD_DIR}/tidy.log" 2>"${BUILD_DIR}/tidy_errors.log" || failed+=(clang-tidy)
+  findings "${BUILD_DIR}/tidy.log" || true
 fi
 if wants cppcheck; then
   step "cppcheck"

@@ -22,7 +22,7 @@
 
 namespace example {
 
-using namespace cartographer_sdf;
+using namespace cartographer_sdf;  // NOLINT: as a user may write
 
 // Tasks run wherever the caller likes: here, one after the other.
 void RunInOrder(const size_t n, const std::function<void(size_t)>& task) {

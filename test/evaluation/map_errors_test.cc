@@ -210,7 +210,6 @@ TEST(EvaluateTrajectoryTest, NoneWhereTheMotionIsUndetermined) {
 namespace cartographer_sdf::relations_test {
 namespace {
 
-using ::cartographer_sdf::testing::TemporaryDirectory;
 using ::testing::HasSubstr;
 
 constexpr double kSecondsPerScan = 0.1;

@@ -21,11 +21,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const std::vector<CsvColumn>& Columns() {
-  static const auto* const columns =
+  static const auto* const kColumns =
       new std::vector<CsvColumn>{{"name", CsvType::kWord},
                                  {"count", CsvType::kInteger},
                                  {"size", CsvType::kNumber}};
-  return *columns;
+  return *kColumns;
 }
 
 class TextFileTest : public ::testing::Test {

@@ -22,7 +22,6 @@ namespace cartographer_sdf::scan_session_test {
 namespace {
 
 using testing::Building;
-using ::testing::Each;
 using testing::Narrowed;
 using testing::ScanFrom;
 using testing::TwoRooms;

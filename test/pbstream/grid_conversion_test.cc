@@ -255,7 +255,7 @@ TEST(GridConversionTest, WallsOfATsdfHaveNoGaps) {
     const double angle = 0.1 * k;
     const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
     proto::Grid2D stored =
-        MakeTsdf(std::vector<float>(kSize * kSize, 0.f), 3.f);
+        MakeTsdf(std::vector<float>(size_t{kSize} * kSize, 0.f), 3.f);
     stored.mutable_limits()->mutable_cell_limits()->set_num_x_cells(kSize);
     stored.mutable_limits()->mutable_cell_limits()->set_num_y_cells(kSize);
     const auto distance = [&](const int i, const int j) {

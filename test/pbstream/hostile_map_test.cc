@@ -31,21 +31,20 @@ using ::testing::StartsWith;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 const std::set<NodeId>& AllNodes() {
-  static const std::set<NodeId>* const nodes =
+  static const std::set<NodeId>* const kNodes =
       new std::set<NodeId>{{SmallMap::kTrajectory, 0},
                            {SmallMap::kTrajectory, 1},
                            {SmallMap::kTrajectory, 2},
                            {SmallMap::kTrajectory, 3}};
-  return *nodes;
+  return *kNodes;
 }
 
 // As testing::Container(), but it compresses a record only once.
 std::string Container(const std::vector<std::string>& records) {
-  static std::map<std::string, std::string>* const compressed_records =
-      new std::map<std::string, std::string>;
+  static auto& compressed_records = *new std::map<std::string, std::string>;
   std::string bytes = testing::MagicNumber();
   for (const std::string& record : records) {
-    std::string& compressed = (*compressed_records)[record];
+    std::string& compressed = compressed_records[record];
     if (compressed.empty()) compressed = testing::Gzipped(record);
     bytes += testing::LittleEndian(compressed.size()) + compressed;
   }

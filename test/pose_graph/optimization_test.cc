@@ -177,10 +177,10 @@ void OracleStep(const std::vector<OracleEdge>& edges, const double huber_scale,
     const double weight =
         edge.robust && r.norm() > huber_scale ? huber_scale / r.norm() : 1.;
     const int offsets[] = {3 * edge.start, 3 * edge.end};
-    for (const int a : {0, 1}) {
+    for (const Eigen::Index a : {0, 1}) {
       gradient.segment<3>(offsets[a]) +=
           weight * jacobian.middleCols<3>(3 * a).transpose() * r;
-      for (const int b : {0, 1}) {
+      for (const Eigen::Index b : {0, 1}) {
         hessian.block<3, 3>(offsets[a], offsets[b]) +=
             weight * jacobian.middleCols<3>(3 * a).transpose() *
             jacobian.middleCols<3>(3 * b);

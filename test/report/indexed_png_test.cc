@@ -34,7 +34,7 @@ TEST(IndexedPngTest, ReadsBackWithAnyNumberOfColors) {
       ASSERT_EQ(png.height, height);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-          const int index = pixels[static_cast<size_t>(y * width + x)];
+          const int index = pixels[static_cast<size_t>(y) * width + x];
           ASSERT_EQ(png.At(x, y), (Rgb{index, 255 - index, 7}))
               << num_colors << " " << x << " " << y;
         }
@@ -44,7 +44,7 @@ TEST(IndexedPngTest, ReadsBackWithAnyNumberOfColors) {
 }
 
 TEST(IndexedPngTest, IsSmall) {
-  const std::vector<uint8_t> pixels(1000 * 1000, 1);
+  const std::vector<uint8_t> pixels(1'000'000, 1);
   EXPECT_LT(EncodeIndexedPng(1000, 1000, PaletteOf(3), pixels).size(), 2000u);
 }
 

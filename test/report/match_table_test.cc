@@ -15,7 +15,6 @@
 namespace cartographer_sdf::match_table_test {
 namespace {
 
-using ::cartographer_sdf::testing::TemporaryDirectory;
 using ::testing::HasSubstr;
 
 // What outside scripts rely on.

@@ -79,7 +79,7 @@ TEST(FloorPlanTest, ReadsBinaryOfOneAndTwoBytes) {
   EXPECT_TRUE(one->occupied(1, 1));
   EXPECT_FALSE(one->occupied(0, 0));
   const absl::StatusOr<FloorPlan> two =
-      Read(std::string("P5 2 1 1000\n\x03\xe7\x00\xff", 17));
+      Read(std::string("P5 2 1 1000\n\x03\xe7\x00\xff", 16));
   ASSERT_TRUE(two.ok()) << two.status();
   EXPECT_FALSE(two->occupied(0, 0));
   EXPECT_TRUE(two->occupied(1, 0));

@@ -20,9 +20,9 @@ using ::testing::HasSubstr;
 
 // Of the default simulation, made once.
 const SimulatedMap& DefaultMap() {
-  static const SimulatedMap* const map =
+  static const SimulatedMap* const kMap =
       new SimulatedMap(*Simulate(MakeOffice({}, 42), SimulationOptions{}, 42));
-  return *map;
+  return *kMap;
 }
 
 // A quick one: a drive of 30 m in 6 m x 6 m.

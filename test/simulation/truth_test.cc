@@ -13,7 +13,6 @@
 namespace cartographer_sdf::truth_test {
 namespace {
 
-using ::cartographer_sdf::testing::TemporaryDirectory;
 using ::testing::HasSubstr;
 
 constexpr double kWrittenPrecision = 0.5e-9 + 1e-12;

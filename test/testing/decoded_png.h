@@ -6,6 +6,7 @@
 
 #include <cairo/cairo.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <ostream>
@@ -34,7 +35,8 @@ struct DecodedPng {
   // Black outside, as of an empty picture where the bytes are no PNG.
   [[nodiscard]] Rgb At(const int x, const int y) const {
     if (x < 0 || y < 0 || x >= width || y >= height) return {};
-    return pixels[static_cast<size_t>(y * width + x)];
+    return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) +
+                  static_cast<size_t>(x)];
   }
 };
 
@@ -53,12 +55,13 @@ inline DecodedPng DecodePng(const std::string& png) {
   if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
     decoded.width = cairo_image_surface_get_width(surface);
     decoded.height = cairo_image_surface_get_height(surface);
+    const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface);
     for (int y = 0; y < decoded.height; ++y) {
       for (int x = 0; x < decoded.width; ++x) {
         uint32_t pixel;
         std::memcpy(&pixel,
-                    cairo_image_surface_get_data(surface) +
-                        y * cairo_image_surface_get_stride(surface) + 4 * x,
+                    cairo_image_surface_get_data(surface) + y * stride +
+                        std::ptrdiff_t{4} * x,
                     sizeof(pixel));
         decoded.pixels.push_back(Rgb{static_cast<int>((pixel >> 16) & 255),
                                      static_cast<int>((pixel >> 8) & 255),

@@ -23,7 +23,7 @@ class InspectedRooms {
       for (PoseGraph* const graph : {&before, &after}) {
         for (const int k : {0, 1}) {
           Node& node = graph->nodes[{trajectory, k}];
-          node.time = k * 5 * kTicksPerSecond;
+          node.time = int64_t{k} * 5 * kTicksPerSecond;
           node.T_map_node = graph->submap_poses[id] * Rigid2(0.5 * k, 0.25, 0.);
         }
       }

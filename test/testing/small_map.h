@@ -118,7 +118,7 @@ struct SmallMap {
   }
   // [100 ns]
   static int64_t NodeTime(const int index) {
-    return 621355968000000000 + 10'000'000 * index;
+    return 621355968000000000 + int64_t{10'000'000} * index;
   }
   // A drive along a circle of 10 m radius, 1 m a second.
   static Rigid3 Odometry(const double seconds) {

@@ -4,8 +4,7 @@
 #ifndef TEST_TESTING_TEMPORARY_DIRECTORY_H_
 #define TEST_TESTING_TEMPORARY_DIRECTORY_H_
 
-#include <stdlib.h>
-
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>

@@ -15,7 +15,7 @@ namespace cartographer_sdf::allocator_test {
 namespace {
 
 // Arrays as of a submap with 1000 x 1000 cells.
-constexpr size_t kNumFloats = 1000 * 1000;
+constexpr size_t kNumFloats = 1'000'000;
 
 TEST(KeepFreedMemoryTest, HasItForTheNextSubmap) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || \

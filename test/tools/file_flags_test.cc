@@ -244,8 +244,8 @@ TEST_F(FileFlagsTest, FilesOfAnotherKindAreNotReplaced) {
           return Check(subcommand, {absl::StrCat("--", flag.name, "=", path)});
         };
         EXPECT_EQ(check(empty), "");
-        EXPECT_EQ(check(map) == "", IsMap(flag));
-        EXPECT_EQ(check(text) == "", IsText(flag));
+        EXPECT_EQ(check(map).empty(), IsMap(flag));
+        EXPECT_EQ(check(text).empty(), IsText(flag));
       });
 }
 
@@ -254,7 +254,7 @@ TEST_F(FileFlagsTest, OnlyTablesGoToTheStandardOutput) {
           [&](const Subcommand& subcommand, const SubcommandFlag& flag) {
             const std::string message =
                 Check(subcommand, {absl::StrCat("--", flag.name, "=-")});
-            EXPECT_EQ(message == "", IsText(flag)) << message;
+            EXPECT_EQ(message.empty(), IsText(flag)) << message;
           });
 }
 
