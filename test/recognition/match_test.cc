@@ -20,9 +20,9 @@ using testing::IsPoseNear;
 constexpr double kDegree = M_PI / 180.;
 
 const testing::Viewpoints& OtherWestRoomViewpoints() {
-  static const auto* const viewpoints =
+  static const auto* const kViewpoints =
       new testing::Viewpoints{{2.2, 2.4}, {4.4, 3.2}, {6.3, 4.2}, {2., 1.}};
-  return *viewpoints;
+  return *kViewpoints;
 }
 
 Place See(const Rigid2& T_world_submap, const testing::Viewpoints& viewpoints,

@@ -75,8 +75,8 @@ TEST(NeighbourhoodTest, NeighboursOfTheRightPoseAgree) {
 
 TEST(NeighbourhoodTest, NeighboursOfAWrongPoseContradict) {
   const TwoVisits visits;
-  const Rigid2 T_world_first = visits.T_world_submap(TwoVisits::kWestFirst);
-  const Rigid2 T_world_again = visits.T_world_submap(TwoVisits::kWestAgain);
+  const Rigid2& T_world_first = visits.T_world_submap(TwoVisits::kWestFirst);
+  const Rigid2& T_world_again = visits.T_world_submap(TwoVisits::kWestAgain);
   // One door further.
   const Rigid2 wrong =
       T_world_first.Inverse() * Rigid2(2., 0.5, 0.) * T_world_again;

@@ -92,16 +92,15 @@ TEST(VerifyNeighbourhoodsTest, NeighboursMakeTheRightMatchMoreCertain) {
 
 TEST(VerifyNeighbourhoodsTest, RefusesAMatchThatNeighboursContradict) {
   const TwoVisits visits;
-  const std::vector<Match> right = WestMatch(visits);
-  std::vector<Match> wrong = right;
+  const std::vector<Match> matches = WestMatch(visits);
   // The rooms agree just as well, but local SLAM says that the east room was
   // seen elsewhere: as between look-alikes.
   const TwoVisits elsewhere(Rigid2(-2.5, 1., 0.4));
-  const std::vector<Match> judged_elsewhere = Judged(elsewhere, wrong);
+  const std::vector<Match> judged_elsewhere = Judged(elsewhere, matches);
   const Match* const look_alike =
       Find(judged_elsewhere, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
   ASSERT_NE(look_alike, nullptr);
-  const std::vector<Match> judged = Judged(visits, right);
+  const std::vector<Match> judged = Judged(visits, matches);
   const Match* const west =
       Find(judged, TwoVisits::kWestFirst, TwoVisits::kWestAgain);
   ASSERT_NE(west, nullptr);
