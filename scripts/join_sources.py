@@ -70,7 +70,7 @@ def write_joined(build_dir, joined_dir):
 
 def name_sources(joined_dir):
     table = json.loads((joined_dir / TABLE).read_text())
-    place = re.compile("(" + "|".join(map(re.escape, sorted(table, reverse=True))) + r"):(\d+)")
+    place = re.compile("(" + ("|".join(map(re.escape, table)) or "(?!)") + r"):(\d+)")  # (?!): nothing was joined
 
     def source_of(match):
         beginnings, line = table[match[1]], int(match[2])

@@ -78,6 +78,11 @@ class JoinSourcesTest(unittest.TestCase):
             self.assertEqual(f"{self.build}/{expected}:7: warning: x\n", self.name(f"{joined}:{line}:7: warning: x\n"))
         self.assertEqual("elsewhere.cc:3:7: warning: x\n", self.name("elsewhere.cc:3:7: warning: x\n"))
 
+    def test_leaves_all_places_where_nothing_is_joined(self):
+        self.write_commands(self.build / "first.cc")
+        self.join()
+        self.assertEqual("first.cc:3:7: warning: x\n", self.name("first.cc:3:7: warning: x\n"))
+
     @unittest.skipUnless(shutil.which("clang-tidy"), "needs clang-tidy")
     def test_the_analyser_follows_paths_in_it(self):
         # In the unity file it would say nothing.
