@@ -4,8 +4,8 @@
 
 # What compilers and analysers say without running anything: clang and its
 # warnings as errors, clang-tidy with .clang-tidy, and cppcheck with
-# .cppcheck. Takes half an hour for the whole tree, so that CI does not run
-# it; before a release, and with --since for a change.
+# .cppcheck. Takes an hour of CPU time or more for the whole tree, so that CI
+# does not run it; before a release, and with --since for a change.
 
 set -euo pipefail
 

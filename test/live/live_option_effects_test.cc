@@ -41,7 +41,7 @@ struct SeenSubmap {
 
 // Two rooms, one after the other, and later both again.
 const std::vector<SeenSubmap>& Seen() {
-  static const auto* const seen = new std::vector<SeenSubmap>{
+  static const auto* const kSeen = new std::vector<SeenSubmap>{
       {{0, 0}, Rigid2(3., 2., 0.4), testing::WestRoomViewpoints()},
       {{0, 2}, Rigid2(12., 2., 1.4), testing::EastRoomViewpoints()},
       {{0, 10},
@@ -50,7 +50,7 @@ const std::vector<SeenSubmap>& Seen() {
       {{0, 12},
        Rigid2(13., 1., 0.2),
        {{10.8, 2.4}, {11.2, -0.6}, {13.8, 1.}, {13.3, 3.2}}}};
-  return *seen;
+  return *kSeen;
 }
 
 NodeData TakeNode(const Rigid2& T_world_node) {
@@ -259,7 +259,7 @@ struct Probe {
   const Situation* situation;
 };
 const std::vector<Probe>& Probes() {
-  static const auto* const probes = new std::vector<Probe>{
+  static const auto* const kProbes = new std::vector<Probe>{
       {"enabled", "false", &kRoom},
       {"inject_constraints", "false", &kRoom},
       {"log_closures", "true", &kRoom},
@@ -285,7 +285,7 @@ const std::vector<Probe>& Probes() {
       {"localization.scan_localization.min_num_beams", "360", &kRoomOfScans},
       {"localization.scan_session.look_rotation", "3.", &kRoomOfScans},
   };
-  return *probes;
+  return *kProbes;
 }
 const char* const kSharedTables[] = {"place.",
                                      "match.",

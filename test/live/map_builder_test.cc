@@ -84,8 +84,9 @@ TEST(MapBuilderTest, ClosesLoops) {
   const int trajectory_id = map_builder->AddTrajectoryBuilder(
       SensorIds(), stock.trajectory_builder,
       [&num_results](
-          int, cartographer::common::Time, cartographer::transform::Rigid3d,
-          cartographer::sensor::RangeData,
+          int, cartographer::common::Time,
+          const cartographer::transform::Rigid3d&,
+          const cartographer::sensor::RangeData&,
           std::unique_ptr<
               const mapping::TrajectoryBuilderInterface::InsertionResult>) {
         ++num_results;

@@ -42,7 +42,7 @@ struct DrivenOffice {
 
 // A round trip, and parts of it again.
 inline const DrivenOffice& TheDrivenOffice() {
-  static const DrivenOffice* const instance = [] {
+  static const DrivenOffice* const kInstance = [] {
     auto* const office = new DrivenOffice;
     office->plan = MakeOffice(OfficeOptions(), 3);
     DriveOptions drive;
@@ -62,7 +62,7 @@ inline const DrivenOffice& TheDrivenOffice() {
     }
     return office;
   }();
-  return *instance;
+  return *kInstance;
 }
 
 class Robot {
