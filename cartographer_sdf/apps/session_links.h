@@ -22,8 +22,9 @@
 namespace cartographer_sdf {
 
 struct SessionLinkOptions {
-  // A session is localized in, or localizes, so many of those that it resembles
-  // most. Others follow only where sessions are not connected otherwise.
+  // Each session is compared with at least so many others, those that it
+  // resembles most. Further ones follow only where sessions are not connected
+  // otherwise.
   int min_num_links_per_session = 4;
 };
 [[nodiscard]] std::string Validate(const SessionLinkOptions& options);

@@ -63,7 +63,8 @@ struct OptimizationRun {
   double max_step_meters = 0.;
   double max_step_angle = 0.;
 };
-// Near enough to the minimum to see outliers.
+// Near enough to the minimum to see outliers: less than a tenth of the errors
+// that make one (OutlierRejectionOptions).
 constexpr OptimizationRun kRoughRun{true, 2e-2, 2e-3};
 // From poses that are near the minimum.
 constexpr OptimizationRun kSettlingRun{false};
