@@ -292,6 +292,7 @@ void Searcher::ForgetSubmap(const SubmapId& id) {
     search_.Forget(id);
     map_odometry_.erase(id);
     if (map_layout_) map_layout_->T_map_submap.erase(id);
+    RetireClosures();
     CountPlaces();
   });
 }
@@ -305,6 +306,12 @@ Searcher::LiveClosure Searcher::MakeLiveClosure(Closure closure) {
   decltype(Match::inliers)().swap(live.closure.match.inliers);
   decltype(Match::rivals)().swap(live.closure.match.rivals);
   return live;
+}
+
+ClosureRecord Searcher::MakeRecord(const LiveClosure& closure) {
+  const Match& match = closure.closure.match;
+  return {match.pair, match.evidence, closure.num_inliers,
+          closure.closure.status, closure.num_constraints};
 }
 
 void Searcher::SetStatus(const ClosureStatus status,
@@ -435,7 +442,6 @@ LiveSummary Searcher::GetSummary() const {
   LiveSummary summary = summary_;
   summary.worker_cpu_seconds = cpu_seconds;
   summary.num_waiting_tasks = num_waiting_tasks;
-  summary.num_closures = static_cast<int>(closures_.size());
   if (summary.num_callbacks > 0) {
     summary.callback_mean_seconds /= static_cast<double>(summary.num_callbacks);
     std::vector<float> seconds = callback_seconds_;
@@ -449,12 +455,10 @@ LiveSummary Searcher::GetSummary() const {
 
 std::vector<ClosureRecord> Searcher::GetClosures() const {
   const absl::MutexLock lock(&mutex_);
-  std::vector<ClosureRecord> records;
-  for (const LiveClosure& closure : closures_) {
-    const Match& match = closure.closure.match;
-    records.push_back({match.pair, match.evidence, closure.num_inliers,
-                       closure.closure.status, closure.num_constraints});
-  }
+  std::vector<ClosureRecord> records(retired_closures_.begin(),
+                                     retired_closures_.end());
+  std::transform(closures_.begin(), closures_.end(),
+                 std::back_inserter(records), MakeRecord);
   return records;
 }
 

@@ -146,8 +146,8 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     // trajectory is lost.
     bool is_followed = false;
   };
-  // A recorded closure; holds its constraints while they wait. All are kept, so
-  // they are kept small: without the inliers and rivals of their match.
+  // A recorded closure; holds its constraints while they wait. Kept small:
+  // without the inliers and rivals of its match.
   struct LiveClosure {
     Closure closure;
     int num_inliers = 0;
@@ -202,6 +202,7 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
       const std::map<int, int>& trajectory_ids) const
       ABSL_LOCKS_EXCLUDED(mutex_);
   [[nodiscard]] static LiveClosure MakeLiveClosure(Closure closure);
+  [[nodiscard]] static ClosureRecord MakeRecord(const LiveClosure& closure);
   void ForgetSubmap(const SubmapId& id) ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
   void SetStatus(ClosureStatus status, LiveClosure* closure)
       ABSL_EXCLUSIVE_LOCKS_REQUIRED(mutex_);
@@ -231,6 +232,9 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
                    const PlaceRecognizer::Recognition& recognition)
       ABSL_LOCKS_EXCLUDED(mutex_);
   void UpdateClosures(const SubmapId& newest) ABSL_LOCKS_EXCLUDED(mutex_);
+  // Keeps only the records of closures on which nothing is to be decided any
+  // more, as one of their submaps is gone, or grew and never became a place.
+  void RetireClosures() ABSL_LOCKS_EXCLUDED(mutex_);
   ClosureSnapshot TakeClosureSnapshot() const ABSL_LOCKS_EXCLUDED(mutex_);
   void ApplyDecisions(const SubmapId& newest, const ClosureSnapshot& before,
                       const std::vector<Closure>& decided)
@@ -299,7 +303,10 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
   InjectionGate gate_ ABSL_GUARDED_BY(mutex_);
   std::map<int, Trajectory> trajectories_ ABSL_GUARDED_BY(mutex_);
   std::map<SubmapId, SubmapRecord> submaps_ ABSL_GUARDED_BY(mutex_);
+  // Only the worker's tasks remove any, so that indices hold within a task.
   std::vector<LiveClosure> closures_ ABSL_GUARDED_BY(mutex_);
+  // The newest of those retired, for reports.
+  std::deque<ClosureRecord> retired_closures_ ABSL_GUARDED_BY(mutex_);
   std::deque<RefusedMatch> refused_ ABSL_GUARDED_BY(mutex_);
   // Of loaded trajectories, so that the worker does not add them later.
   std::set<SubmapId> gone_ ABSL_GUARDED_BY(mutex_);

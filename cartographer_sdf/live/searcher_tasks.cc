@@ -27,6 +27,8 @@ constexpr size_t kMaxNumClosuresToAgree = 400;
 constexpr double kDriftOfMaps = 0.2;
 // Latest candidates that are kept to be shown.
 constexpr size_t kMaxNumRefused = 200;
+// Latest closures of submaps that are gone, which are kept for reports.
+constexpr size_t kMaxNumRetiredClosures = 10000;
 constexpr char kPlaceFileSuffix[] = ".places";
 // In a long search, the interval between queries is this fraction of the
 // distance driven since it began.
@@ -140,6 +142,7 @@ bool Searcher::AddClosures(const SubmapId& id,
     }
     closures_.push_back(
         MakeLiveClosure({match, ClosureStatus::kUnsupported, {}, {}}));
+    ++summary_.num_closures;
     has_closures = true;
   }
   return has_closures;
@@ -209,6 +212,25 @@ void Searcher::ApplyDecisions(const SubmapId& newest,
     }
     LogClosure(closure);
   }
+}
+
+void Searcher::RetireClosures() {
+  const absl::MutexLock lock(&mutex_);
+  std::vector<LiveClosure> kept;
+  for (LiveClosure& live : closures_) {
+    const PairPose& pair = live.closure.match.pair;
+    const bool has_places =
+        submaps_.count(pair.reference) > 0 && submaps_.count(pair.query) > 0;
+    if (has_places || live.closure.status == ClosureStatus::kReady) {
+      kept.push_back(std::move(live));
+      continue;
+    }
+    retired_closures_.push_back(MakeRecord(live));
+    if (retired_closures_.size() > kMaxNumRetiredClosures) {
+      retired_closures_.pop_front();
+    }
+  }
+  closures_ = std::move(kept);
 }
 
 void Searcher::DescribeLoaded(const std::map<int, int>& trajectory_ids,
@@ -366,6 +388,7 @@ void Searcher::ConcludeQuery(const BackgroundSearch::Query& query,
                              const double cpu_seconds,
                              LocalizationResult* const result) {
   if (!RecordQuery(query, cpu_seconds, result)) return;
+  RetireClosures();  // of earlier searches
   search_.StopLocalizing(result->trajectory_id);
   LOG(INFO) << "trajectory " << result->trajectory_id
             << " is localised in the map at " << *result->T_map_tracking
@@ -401,6 +424,7 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
               &closure);
     LogClosure(closure);
     closures_.push_back(std::move(closure));
+    ++summary_.num_closures;
   }
   return true;
 }
