@@ -23,8 +23,56 @@ constexpr double kMinOverlap = 0.4;
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
 
+// A wall across a way that was driven may be this long, beside the half metre
+// at its ends that is near other walls [m]: a door that was closed since is
+// within that, furniture and double doors are shorter.
+constexpr double kMaxDrivenThrough = 1.;
+
 // Pairs that are searched for crossing walls, evenly spaced among all.
 constexpr size_t kMaxNumComparedPairs = 200;
+
+// Whether a pose differs from a predicted one by no more than answers may.
+bool IsNearPrediction(const LocalizationTask& task,
+                      const Rigid2& T_reference_query,
+                      const PairPose& predicted) {
+  return AreNear(
+      T_reference_query, predicted.T_reference_query,
+      task.query.layout->centroids.at(predicted.query),
+      {task.placement.same_distance_meters, task.placement.same_rotation});
+}
+
+// Returns the match if the walls, registered near the predicted pose, make it
+// more likely right than not.
+std::optional<Match> MeasureAt(const LocalizationTask& task,
+                               const PairPose& predicted) {
+  const VerificationOptions& options = task.match.verification;
+  const std::optional<MeasuredPose> measured = RegisterAndMeasure(
+      options, task.map.places->at(predicted.reference).surface,
+      task.query.places->at(predicted.query).surface,
+      predicted.T_reference_query);
+  if (!measured ||
+      !IsNearPrediction(task, measured->T_reference_query, predicted)) {
+    return std::nullopt;
+  }
+  JudgementOptions likely = options.judgement;
+  likely.min_score = 0.;
+  Match match;
+  match.pair = {predicted.reference, predicted.query,
+                measured->T_reference_query,
+                Score(likely.score_weights, measured->evidence, 0.)};
+  match.pair_score = match.pair.score;
+  match.evidence = measured->evidence;
+  match.verdict =
+      Judge(likely, match.evidence, match.pair.score, likely.min_margin);
+  if (match.verdict != Verdict::kAccepted) return std::nullopt;
+  return match;
+}
+
+const DrivenWay& WayOf(const PlacedMap& map, const SubmapId& id) {
+  static const DrivenWay kNone;
+  const auto found = map.layout->ways.find(id);
+  return found == map.layout->ways.end() ? kNone : found->second;
+}
 
 // A pair of places that the placement makes overlap.
 struct PairToCheck {
@@ -38,8 +86,11 @@ struct PairToCheck {
 
 class Confirmer {
  public:
-  Confirmer(const LocalizationTask& task, std::vector<PairPose> votes)
-      : task_(task), votes_(std::move(votes)) {
+  Confirmer(const LocalizationTask& task, std::vector<PairPose> votes,
+            const bool tolerates_rivals)
+      : task_(task),
+        votes_(std::move(votes)),
+        tolerates_rivals_(tolerates_rivals) {
     for (const PairPose& vote : votes_) done_.insert(IdsOf(vote));
   }
 
@@ -80,18 +131,22 @@ class Confirmer {
     }
     const std::vector<size_t> indices = EvenlySpacedIndices(
         pairs.size(), std::min(pairs.size(), kMaxNumComparedPairs));
-    std::vector<std::optional<double>> lengths(indices.size());
+    std::vector<std::optional<CrossingWalls>> walls(indices.size());
     executor(indices.size(), [&](const size_t k) {
       const PairPose& pair = pairs[indices[k]];
-      lengths[k] = CrossingLength(pair, voted.count(IdsOf(pair)) > 0);
+      walls[k] = WallsAcross(pair, voted.count(IdsOf(pair)) > 0);
     });
     for (size_t k = 0; k < indices.size(); ++k) {
-      if (!lengths[k]) continue;
+      if (!walls[k]) continue;
       ++confirmation->num_compared;
-      if (*lengths[k] <= task_.placement.max_crossing_wall_meters) continue;
       const PairPose& pair = pairs[indices[k]];
+      confirmation->num_driven_through +=
+          walls[k]->longest_driven_through > kMaxDrivenThrough ? 1 : 0;
+      if (walls[k]->longest <= task_.placement.max_crossing_wall_meters) {
+        continue;
+      }
       confirmation->crossing_walls.push_back(
-          {pair.reference, pair.query, *lengths[k]});
+          {pair.reference, pair.query, walls[k]->longest});
     }
   }
 
@@ -104,18 +159,10 @@ class Confirmer {
     return {pair.reference, pair.query};
   }
 
-  [[nodiscard]] bool IsNearPrediction(const Rigid2& T_reference_query,
-                                      const PairPose& predicted) const {
-    return AreNear(
-        T_reference_query, predicted.T_reference_query,
-        task_.query.layout->centroids.at(predicted.query),
-        {task_.placement.same_distance_meters, task_.placement.same_rotation});
-  }
-
-  // Returns the length of the longest crossing wall at the pose of the vote, or
-  // where a predicted pair registers; nullopt if that is not near.
-  [[nodiscard]] std::optional<double> CrossingLength(const PairPose& pair,
-                                                     const bool is_vote) const {
+  // Returns the crossing walls at the pose of the vote, or where a predicted
+  // pair registers; nullopt if that is not near.
+  [[nodiscard]] std::optional<CrossingWalls> WallsAcross(
+      const PairPose& pair, const bool is_vote) const {
     const SurfaceModel& reference =
         task_.map.places->at(pair.reference).surface;
     const SurfaceModel& query = task_.query.places->at(pair.query).surface;
@@ -124,12 +171,14 @@ class Confirmer {
       const std::optional<Rigid2> registered =
           RegisterSubmaps(task_.match.verification.registration, reference,
                           query, T_reference_query);
-      if (!registered || !IsNearPrediction(*registered, pair)) {
+      if (!registered || !IsNearPrediction(task_, *registered, pair)) {
         return std::nullopt;
       }
       T_reference_query = *registered;
     }
-    return LongestCrossingWall(reference, query, T_reference_query);
+    return cartographer_sdf::FindCrossingWalls(
+        reference, WayOf(task_.map, pair.reference), query,
+        WayOf(task_.query, pair.query), T_reference_query);
   }
 
   // Returns the pairs that the votes make overlap, without those in `done`,
@@ -182,7 +231,11 @@ class Confirmer {
   }
 
   void Check(PairToCheck* const pair) const {
-    pair->agreeing = VerifyPrediction(*pair);
+    pair->agreeing =
+        tolerates_rivals_
+            ? MeasureAt(task_, {pair->reference->id, pair->query->id,
+                                pair->T_reference_query, 0.})
+            : VerifyPrediction(*pair);
     if (pair->agreeing ||
         DriftSigma(task_.consistency, pair->way) > kMaxContradictionSigma) {
       return;
@@ -200,7 +253,7 @@ class Confirmer {
                          pair.query->surface, {pair.T_reference_query});
     if (!verified || verified->verdict != Verdict::kAccepted ||
         !IsNearPrediction(
-            verified->T_reference_query,
+            task_, verified->T_reference_query,
             {pair.reference->id, pair.query->id, pair.T_reference_query, 0.})) {
       return std::nullopt;
     }
@@ -210,9 +263,21 @@ class Confirmer {
 
   const LocalizationTask& task_;
   std::vector<PairPose> votes_;
+  const bool tolerates_rivals_;
   std::set<Ids> done_;
   size_t num_checked_ = 0;
 };
+
+Confirmation Confirm(Confirmer confirmer, const size_t max_num_pairs,
+                     const Executor& executor) {
+  Confirmation confirmation;
+  while (confirmer.num_checked() < max_num_pairs &&
+         confirmer.Spread(max_num_pairs - confirmer.num_checked(), executor,
+                          &confirmation)) {
+  }
+  confirmer.FindCrossingWalls(executor, &confirmation);
+  return confirmation;
+}
 
 }  // namespace
 
@@ -247,17 +312,54 @@ std::optional<Match> FindContradiction(const VerificationOptions& options,
   return match;
 }
 
+bool IsCrossed(const PlacementOptions& options, const size_t num_crossing_walls,
+               const int num_compared) {
+  return static_cast<double>(num_crossing_walls) >
+         options.max_crossed_fraction * num_compared;
+}
+
+double ContradictingFraction(const std::vector<Match>& agreeing,
+                             const std::vector<Match>& contradicting) {
+  std::set<SubmapId> agreeing_places, contradicting_places;
+  for (const Match& match : agreeing) agreeing_places.insert(match.pair.query);
+  for (const Match& match : contradicting) {
+    if (agreeing_places.count(match.pair.query) == 0) {
+      contradicting_places.insert(match.pair.query);
+    }
+  }
+  const size_t num_places =
+      agreeing_places.size() + contradicting_places.size();
+  if (num_places == 0) return 0.;
+  return static_cast<double>(contradicting_places.size()) /
+         static_cast<double>(num_places);
+}
+
 Confirmation ConfirmPlacement(const LocalizationTask& task,
                               std::vector<PairPose> votes,
                               const size_t max_num_pairs,
                               const Executor& executor) {
-  Confirmer confirmer(task, std::move(votes));
-  Confirmation confirmation;
-  while (confirmer.num_checked() < max_num_pairs &&
-         confirmer.Spread(max_num_pairs - confirmer.num_checked(), executor,
-                          &confirmation)) {
+  return Confirm(Confirmer(task, std::move(votes), false), max_num_pairs,
+                 executor);
+}
+
+Confirmation MeasurePlacement(const LocalizationTask& task,
+                              std::vector<PairPose> votes,
+                              const size_t max_num_pairs,
+                              const Executor& executor) {
+  std::vector<std::optional<Match>> measured(votes.size());
+  executor(votes.size(),
+           [&](const size_t k) { measured[k] = MeasureAt(task, votes[k]); });
+  std::vector<PairPose> agreeing;
+  std::vector<Match> matches;
+  for (std::optional<Match>& match : measured) {
+    if (!match) continue;
+    agreeing.push_back(match->pair);
+    matches.push_back(*std::move(match));
   }
-  confirmer.FindCrossingWalls(executor, &confirmation);
+  Confirmation confirmation = Confirm(
+      Confirmer(task, std::move(agreeing), true), max_num_pairs, executor);
+  confirmation.agreeing.insert(confirmation.agreeing.begin(), matches.begin(),
+                               matches.end());
   return confirmation;
 }
 

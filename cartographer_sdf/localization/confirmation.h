@@ -60,7 +60,28 @@ struct Confirmation {
   // than PlacementOptions::max_crossing_wall_meters.
   int num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
+  // And those in which the robot that made one drove through more than a metre
+  // of wall of the other. Furniture may stand there since, so that this tells
+  // placements apart, but refutes none by itself.
+  int num_driven_through = 0;
+
+  // Of the pairs that were compared.
+  [[nodiscard]] double DrivenThroughFraction() const {
+    return num_compared > 0
+               ? static_cast<double>(num_driven_through) / num_compared
+               : 0.;
+  }
 };
+
+// Whether walls cross too many of the pairs that were compared.
+[[nodiscard]] bool IsCrossed(const PlacementOptions& options,
+                             size_t num_crossing_walls, int num_compared);
+
+// Returns the fraction that contradict, of all places of the query with a match
+// that agrees or contradicts; zero if there are none.
+[[nodiscard]] double ContradictingFraction(
+    const std::vector<Match>& agreeing,
+    const std::vector<Match>& contradicting);
 
 // The query to localise, the map, and the options. Nothing is owned.
 struct LocalizationTask {
@@ -76,6 +97,15 @@ struct LocalizationTask {
 // Verifies at most `max_num_pairs` pairs, those near votes first. `votes` are
 // those of the placement.
 [[nodiscard]] Confirmation ConfirmPlacement(const LocalizationTask& task,
+                                            std::vector<PairPose> votes,
+                                            size_t max_num_pairs,
+                                            const Executor& executor);
+
+// The same, for comparing a placement with its rivals: a pair agrees if its
+// walls make the pose more likely right than not, whatever other poses they
+// suit as well. Scores are those of the pair alone, without a margin. The votes
+// are measured like the pairs that they predict.
+[[nodiscard]] Confirmation MeasurePlacement(const LocalizationTask& task,
                                             std::vector<PairPose> votes,
                                             size_t max_num_pairs,
                                             const Executor& executor);

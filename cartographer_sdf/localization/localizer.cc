@@ -11,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/geometry/evenly_spaced.h"
 #include "cartographer_sdf/localization/compared_numbers.h"
+#include "cartographer_sdf/localization/rival_placements.h"
 #include "glog/logging.h"
 
 namespace cartographer_sdf {
@@ -128,6 +129,9 @@ class Localizer {
       clock_.Begin("confirm");
       Confirm();
       Decide();
+      if (result_.verdict != LocalizationVerdict::kLocalized) continue;
+      clock_.Begin("ask for rivals");
+      AskForRivals();
       if (result_.verdict == LocalizationVerdict::kLocalized) return;
     }
   }
@@ -153,13 +157,15 @@ class Localizer {
                                         task_.layouts(), pairs);
   }
 
+  [[nodiscard]] std::vector<PairPose> PairsOfBest() const {
+    std::vector<PairPose> pairs;
+    for (const Match& match : VotesForBest()) pairs.push_back(match.pair);
+    return pairs;
+  }
+
   void Confirm() {
-    std::vector<PairPose> votes;
-    for (const size_t vote : result_.placements.front().votes) {
-      votes.push_back(result_.matches[vote].pair);
-    }
     Confirmation confirmation = ConfirmPlacement(
-        task_, std::move(votes),
+        task_, PairsOfBest(),
         static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
     result_.contradictions = std::move(confirmation.contradicting);
     result_.crossing_walls = std::move(confirmation.crossing_walls);
@@ -173,20 +179,65 @@ class Localizer {
     Vote();
   }
 
-  // Returns the fraction of the query's places with a vote or a contradiction
-  // that contradict the best placement.
-  [[nodiscard]] double ContradictingFraction() const {
-    std::set<SubmapId> agreeing, contradicting;
+  [[nodiscard]] std::vector<Match> VotesForBest() const {
+    std::vector<Match> votes;
     for (const size_t vote : result_.placements.front().votes) {
-      agreeing.insert(result_.matches[vote].pair.query);
+      votes.push_back(result_.matches[vote]);
     }
-    for (const Match& match : result_.contradictions) {
-      if (agreeing.count(match.pair.query) == 0) {
-        contradicting.insert(match.pair.query);
-      }
+    return votes;
+  }
+
+  // Refuses the placement if others do as well on what both maps show.
+  void AskForRivals() {
+    Contest contest = FindRivalPlacements(
+        task_, PairsOfBest(),
+        static_cast<size_t>(options_.max_num_confirmed_pairs), executor_);
+    if (contest.rivals.empty()) return;
+    // Without a pair that says anything by itself, it keeps its votes.
+    Placement& best = result_.placements.front();
+    if (contest.placement.placement.votes.empty()) {
+      best.score = 0.;
+    } else {
+      best = Adopt(std::move(contest.placement));
     }
-    return static_cast<double>(contradicting.size()) /
-           static_cast<double>(agreeing.size() + contradicting.size());
+    result_.placements.resize(1);
+    for (MeasuredPlacement& rival : contest.rivals) {
+      result_.placements.push_back(Adopt(std::move(rival)));
+    }
+    std::stable_sort(result_.placements.begin(), result_.placements.end(),
+                     [](const Placement& a, const Placement& b) {
+                       return a.score > b.score;
+                     });
+    for (Placement& placement : result_.placements) {
+      placement.is_rival = &placement != &result_.placements.front();
+    }
+    const Placement* const rival = CountVotes();
+    result_.T_map_query.reset();
+    result_.parts = {};
+    RefuseAmbiguous(*rival,
+                    "; the place repeats itself, and both suit what was seen");
+  }
+
+  // Takes over the matches of a measured placement.
+  Placement Adopt(MeasuredPlacement measured) {
+    for (size_t& vote : measured.placement.votes) {
+      vote += result_.matches.size();
+    }
+    std::move(measured.confirmation.agreeing.begin(),
+              measured.confirmation.agreeing.end(),
+              std::back_inserter(result_.matches));
+    return std::move(measured.placement);
+  }
+
+  void RefuseAmbiguous(const Placement& rival, const std::string& why) {
+    const Placement& best = result_.placements.front();
+    const auto where = [this](const Placement& placement) {
+      return DescribeWhere(*task_.map.layout, result_.matches, placement);
+    };
+    Refuse(LocalizationVerdict::kAmbiguous,
+           absl::StrFormat("ambiguous between %s (score %.1f) and %s (%.1f)%s",
+                           where(best), best.score, where(rival), rival.score,
+                           why));
   }
 
   void Refuse(const LocalizationVerdict verdict, const std::string& reason) {
@@ -237,11 +288,6 @@ class Localizer {
     return rival;
   }
 
-  [[nodiscard]] bool IsCrossed() const {
-    return static_cast<double>(result_.crossing_walls.size()) >
-           task_.placement.max_crossed_fraction * result_.num_compared;
-  }
-
   [[nodiscard]] std::string DescribeCrossing(const std::string& where) const {
     const CrossingWall& longest = *std::max_element(
         result_.crossing_walls.begin(), result_.crossing_walls.end(),
@@ -277,7 +323,8 @@ class Localizer {
     const Placement* const rival = CountVotes();
     const std::string where =
         DescribeWhere(*task_.map.layout, result_.matches, best);
-    const double fraction = ContradictingFraction();
+    const double fraction =
+        ContradictingFraction(VotesForBest(), result_.contradictions);
     if (!HasLikelyVote(best)) {
       Refuse(LocalizationVerdict::kUncertain,
              absl::StrFormat("too little agrees: no match at %s is certain by "
@@ -291,17 +338,13 @@ class Localizer {
              absl::StrFormat("contradicted: alike at %s, but the surroundings "
                              "of %.0f %% of the places do not match",
                              where, 100. * fraction));
-    } else if (IsCrossed()) {
+    } else if (IsCrossed(options, result_.crossing_walls.size(),
+                         result_.num_compared)) {
       Refuse(LocalizationVerdict::kContradicted, DescribeCrossing(where));
     } else if (rival != nullptr &&
                (best.score - rival->score < options.min_lead ||
                 IsCertainRival(best, *rival))) {
-      Refuse(LocalizationVerdict::kAmbiguous,
-             absl::StrFormat(
-                 "ambiguous between %s (score %.1f) and %s (%.1f)", where,
-                 best.score,
-                 DescribeWhere(*task_.map.layout, result_.matches, *rival),
-                 rival->score));
+      RefuseAmbiguous(*rival, "");
     } else {
       Accept(best);
     }

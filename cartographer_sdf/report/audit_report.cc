@@ -226,7 +226,7 @@ InspectedTable AuditGroupTable(const LoopClosingOptions& stages,
   }
   std::stable_sort(table.rows.begin(), table.rows.end(),
                    [](const InspectedRow& a, const InspectedRow& b) {
-                     return a.pair->score < b.pair->score;
+                     return ScoreOf(a) < ScoreOf(b);
                    });
   FinishTable(&table);
   return table;

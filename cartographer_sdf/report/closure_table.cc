@@ -68,8 +68,8 @@ InspectedRow RowOf(const Match& refused) {
 void SortByScore(const bool best_first, std::vector<InspectedRow>* const rows) {
   std::stable_sort(rows->begin(), rows->end(),
                    [best_first](const InspectedRow& a, const InspectedRow& b) {
-                     return best_first ? a.pair->score > b.pair->score
-                                       : a.pair->score < b.pair->score;
+                     return best_first ? ScoreOf(a) > ScoreOf(b)
+                                       : ScoreOf(a) < ScoreOf(b);
                    });
 }
 

@@ -73,6 +73,11 @@ struct InspectedRow {
   std::optional<Eigen::Vector2d> p_reference_overlap = {};
 };
 
+// Of its pair; zero if it has none.
+[[nodiscard]] inline double ScoreOf(const InspectedRow& row) {
+  return row.pair ? row.pair->score : 0.;
+}
+
 struct InspectedTable {
   std::string name;
   std::string heading;

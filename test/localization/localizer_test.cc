@@ -14,6 +14,7 @@
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 #include "test/testing/divided_hall.h"
+#include "test/testing/row_of_rooms.h"
 #include "test/testing/visited_rooms.h"
 
 namespace cartographer_sdf::localizer_test {
@@ -184,6 +185,46 @@ TEST(CrossingWallsTest, AShortOneMayBeFurniture) {
   EXPECT_EQ(found.verdict, LocalizationVerdict::kLocalized) << found.reason;
   EXPECT_EQ(found.num_compared, 2);
   EXPECT_THAT(found.crossing_walls, SizeIs(0));
+}
+
+// Whatever matching says of one pose: the room next door was not tried.
+Localization FindInRow(const testing::Building& row) {
+  const testing::MapOfRow map = testing::SeeRooms(row, -7., 7.);
+  const testing::MapOfRow query = testing::SeeRooms(row, -3., 3.);
+  return Localize(
+      LocalizationOptions(), ConsistencyOptions(), MatchOptions(),
+      {&map.places, &map.layout}, {&query.places, &query.layout},
+      [](const std::map<SubmapId, Place>&, const ProgressCallback&) {
+        Match match;
+        match.pair = {{0, 0}, {0, 0}, Rigid2(), 9.};
+        match.pair_score = match.pair.score;
+        match.verdict = Verdict::kAccepted;
+        return std::vector<Match>{match};
+      },
+      MakeExecutor(1));
+}
+
+TEST(EqualRoomsTest, AreAmbiguousThoughMatchingIsCertain) {
+  const Localization found = FindInRow(testing::RowOfRooms());
+  EXPECT_EQ(found.verdict, LocalizationVerdict::kAmbiguous);
+  EXPECT_THAT(found.reason, HasSubstr("the place repeats itself"));
+  EXPECT_EQ(found.T_map_query, std::nullopt);
+  // All of them are candidates, with votes of their own.
+  ASSERT_GE(found.placements.size(), 2u);
+  EXPECT_FALSE(found.placements[0].is_rival);
+  EXPECT_NEAR(*found.score, found.placements[0].score, 1e-9);
+  EXPECT_NEAR(*found.runner_up_score, found.placements[1].score, 1e-9);
+  for (size_t k = 1; k < found.placements.size(); ++k) {
+    EXPECT_TRUE(found.placements[k].is_rival);
+    EXPECT_LE(found.placements[k].score, found.placements[k - 1].score);
+    for (const size_t vote : found.placements[k].votes) {
+      EXPECT_THAT(
+          found.placements[k].T_map_query,
+          IsPoseNear(found.matches[vote].pair.T_reference_query, 1e-6, 1e-6));
+    }
+  }
+  EXPECT_EQ(FindInRow(testing::RowOfRooms(1.2)).verdict,
+            LocalizationVerdict::kLocalized);
 }
 
 }  // namespace
