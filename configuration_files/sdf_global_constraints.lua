@@ -40,8 +40,9 @@ recognition.use_retrieval = true
 -- features miss. false: each pair is verified alone; faster.
 recognition.verify_neighbourhoods = true
 -- Least score of a match that stands alone; log-odds. From it on, a match
--- supports likely ones around it, which need not reach it. Larger: fewer wrong
--- matches, fewer matches.
+-- supports likely ones around it, which need not reach it. Likely ones that suit
+-- no other place and support each other may reach it together. Larger: fewer
+-- wrong matches, fewer matches.
 recognition.support.min_unsupported_score = 7.
 
 -- Which closures enter the pose graph.

@@ -23,11 +23,6 @@ constexpr double kMinOverlap = 0.4;
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
 
-// A wall across a way that was driven may be this long, beside the half metre
-// at its ends that is near other walls [m]: a door that was closed since is
-// within that, furniture and double doors are shorter.
-constexpr double kMaxDrivenThrough = 1.;
-
 // Pairs that are searched for crossing walls, evenly spaced among all.
 constexpr size_t kMaxNumComparedPairs = 200;
 
@@ -66,12 +61,6 @@ std::optional<Match> MeasureAt(const LocalizationTask& task,
       Judge(likely, match.evidence, match.pair.score, likely.min_margin);
   if (match.verdict != Verdict::kAccepted) return std::nullopt;
   return match;
-}
-
-const DrivenWay& WayOf(const PlacedMap& map, const SubmapId& id) {
-  static const DrivenWay kNone;
-  const auto found = map.layout->ways.find(id);
-  return found == map.layout->ways.end() ? kNone : found->second;
 }
 
 // A pair of places that the placement makes overlap.
@@ -131,22 +120,18 @@ class Confirmer {
     }
     const std::vector<size_t> indices = EvenlySpacedIndices(
         pairs.size(), std::min(pairs.size(), kMaxNumComparedPairs));
-    std::vector<std::optional<CrossingWalls>> walls(indices.size());
+    std::vector<std::optional<double>> lengths(indices.size());
     executor(indices.size(), [&](const size_t k) {
       const PairPose& pair = pairs[indices[k]];
-      walls[k] = WallsAcross(pair, voted.count(IdsOf(pair)) > 0);
+      lengths[k] = CrossingLength(pair, voted.count(IdsOf(pair)) > 0);
     });
     for (size_t k = 0; k < indices.size(); ++k) {
-      if (!walls[k]) continue;
+      if (!lengths[k]) continue;
       ++confirmation->num_compared;
+      if (*lengths[k] <= task_.placement.max_crossing_wall_meters) continue;
       const PairPose& pair = pairs[indices[k]];
-      confirmation->num_driven_through +=
-          walls[k]->longest_driven_through > kMaxDrivenThrough ? 1 : 0;
-      if (walls[k]->longest <= task_.placement.max_crossing_wall_meters) {
-        continue;
-      }
       confirmation->crossing_walls.push_back(
-          {pair.reference, pair.query, walls[k]->longest});
+          {pair.reference, pair.query, *lengths[k]});
     }
   }
 
@@ -159,10 +144,10 @@ class Confirmer {
     return {pair.reference, pair.query};
   }
 
-  // Returns the crossing walls at the pose of the vote, or where a predicted
-  // pair registers; nullopt if that is not near.
-  [[nodiscard]] std::optional<CrossingWalls> WallsAcross(
-      const PairPose& pair, const bool is_vote) const {
+  // Returns the length of the longest crossing wall at the pose of the vote, or
+  // where a predicted pair registers; nullopt if that is not near.
+  [[nodiscard]] std::optional<double> CrossingLength(const PairPose& pair,
+                                                     const bool is_vote) const {
     const SurfaceModel& reference =
         task_.map.places->at(pair.reference).surface;
     const SurfaceModel& query = task_.query.places->at(pair.query).surface;
@@ -176,9 +161,7 @@ class Confirmer {
       }
       T_reference_query = *registered;
     }
-    return cartographer_sdf::FindCrossingWalls(
-        reference, WayOf(task_.map, pair.reference), query,
-        WayOf(task_.query, pair.query), T_reference_query);
+    return LongestCrossingWall(reference, query, T_reference_query);
   }
 
   // Returns the pairs that the votes make overlap, without those in `done`,

@@ -60,17 +60,6 @@ struct Confirmation {
   // than PlacementOptions::max_crossing_wall_meters.
   int num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
-  // And those in which the robot that made one drove through more than a metre
-  // of wall of the other. Furniture may stand there since, so that this tells
-  // placements apart, but refutes none by itself.
-  int num_driven_through = 0;
-
-  // Of the pairs that were compared.
-  [[nodiscard]] double DrivenThroughFraction() const {
-    return num_compared > 0
-               ? static_cast<double>(num_driven_through) / num_compared
-               : 0.;
-  }
 };
 
 // Whether walls cross too many of the pairs that were compared.

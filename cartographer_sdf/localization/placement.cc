@@ -286,21 +286,8 @@ Rigid2 PlaceByVote(const MapPair& maps, const PairPose& vote,
 MapLayout MakeMapLayout(const PoseGraph& pose_graph,
                         const std::map<SubmapId, OdometryPose>& odometry,
                         const std::map<SubmapId, Place>& places) {
-  MapLayout layout{pose_graph.submap_poses,
-                   {},
-                   {},
-                   DrivenDistances(pose_graph, odometry),
-                   {}};
-  std::map<SubmapId, std::map<NodeId, Eigen::Vector2d>> positions;
-  for (const Constraint& constraint : pose_graph.constraints) {
-    if (constraint.tag != Constraint::Tag::kIntraSubmap) continue;
-    positions[constraint.submap].emplace(
-        constraint.node, constraint.T_submap_node.translation());
-  }
-  for (const auto& [id, of_submap] : positions) {
-    DrivenWay& way = layout.ways[id];
-    for (const auto& entry : of_submap) way.push_back(entry.second);
-  }
+  MapLayout layout{
+      pose_graph.submap_poses, {}, {}, DrivenDistances(pose_graph, odometry)};
   for (const auto& [id, place] : places) {
     layout.centroids.emplace(id, ObservedCentroid(place.surface));
     layout.diameters.emplace(

@@ -23,7 +23,6 @@
 #include "cartographer_sdf/place/place.h"
 #include "cartographer_sdf/place/trajectory_places.h"
 #include "cartographer_sdf/pose_graph/pose_graph.h"
-#include "cartographer_sdf/verification/crossing_wall.h"
 
 namespace cartographer_sdf {
 
@@ -75,8 +74,6 @@ struct MapLayout {
   // Diameters of discs of these areas [m].
   std::map<SubmapId, double> diameters;
   DrivenDistances distances;
-  // Of submaps with scans.
-  std::map<SubmapId, DrivenWay> ways = {};
 };
 [[nodiscard]] MapLayout MakeMapLayout(
     const PoseGraph& pose_graph,

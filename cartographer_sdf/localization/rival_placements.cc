@@ -70,26 +70,23 @@ MeasuredPlacement Measure(const LocalizationTask& task,
   return measured;
 }
 
-// Whether the rival fits what both maps show as a placement must, and the robot
-// need not have driven through walls as it need not have for the other.
-bool IsPossible(const PlacementOptions& options, const Confirmation& rival,
-                const Confirmation& other) {
-  return !rival.agreeing.empty() &&
-         !IsCrossed(options, rival.crossing_walls.size(), rival.num_compared) &&
-         ContradictingFraction(rival.agreeing, rival.contradicting) <=
-             options.max_contradicting_fraction &&
-         rival.DrivenThroughFraction() <=
-             other.DrivenThroughFraction() + options.max_crossed_fraction;
+// Whether it fits what both maps show, as a placement must.
+bool IsPossible(const PlacementOptions& options,
+                const Confirmation& confirmation) {
+  return !confirmation.agreeing.empty() &&
+         !IsCrossed(options, confirmation.crossing_walls.size(),
+                    confirmation.num_compared) &&
+         ContradictingFraction(confirmation.agreeing,
+                               confirmation.contradicting) <=
+             options.max_contradicting_fraction;
 }
 
 // Whether it does as well as the other.
 bool IsRival(const PlacementOptions& options, const MeasuredPlacement& rival,
              const MeasuredPlacement& other) {
   constexpr double kShare = 0.5;
-  const double score = rival.placement.score;
-  return score >= kShare * other.placement.score &&
-         other.placement.score - score < options.min_lead &&
-         IsPossible(options, rival.confirmation, other.confirmation);
+  return rival.placement.score >= kShare * other.placement.score &&
+         other.placement.score - rival.placement.score < options.min_lead;
 }
 
 }  // namespace
@@ -108,10 +105,10 @@ Contest FindRivalPlacements(const LocalizationTask& task,
     for (const size_t vote : proposed[k].votes) {
       of_rival.push_back(similar[vote]);
     }
-    contest.rivals.push_back(
-        Measure(task, std::move(of_rival), max_num_pairs, executor));
-    if (contest.rivals.back().confirmation.agreeing.empty()) {
-      contest.rivals.pop_back();
+    MeasuredPlacement rival =
+        Measure(task, std::move(of_rival), max_num_pairs, executor);
+    if (IsPossible(task.placement, rival.confirmation)) {
+      contest.rivals.push_back(std::move(rival));
     }
   }
   if (contest.rivals.empty()) return contest;

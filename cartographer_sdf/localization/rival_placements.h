@@ -30,11 +30,9 @@ struct MeasuredPlacement {
 
 // The placement that `votes` agree on, and those that do as well on what both
 // maps show: those that reach half of its score, that it leads by less than
-// PlacementOptions::min_lead, that are neither contradicted nor crossed by
-// walls (PlacementOptions), and for which the robot need not have driven
-// through walls in 5 % (max_crossed_fraction) more of the pairs. Best first, at
-// most three. Verifies at most `max_num_pairs` pairs for each, beside those of
-// the votes.
+// PlacementOptions::min_lead, and that are neither contradicted nor crossed by
+// walls (PlacementOptions). Best first, at most three. Verifies at most
+// `max_num_pairs` pairs for each, beside those of the votes.
 struct Contest {
   MeasuredPlacement placement;  // not measured if it has no rivals
   std::vector<MeasuredPlacement> rivals;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "glog/logging.h"
@@ -22,6 +24,8 @@ constexpr double kRotationDriftPerSqrtMeter = 0.01;
 // So many times as many as support a match must oppose it to refuse it: what
 // opposes may be wrong as well, or a submap between bent.
 constexpr int kOutvotingRatio = 2;
+// Submaps so many indices apart share no scans.
+constexpr int kMinIndexDistance = 2;
 
 // Where the matches are, by the ids of their pairs.
 using MatchIndices = std::map<IdPair, size_t>;
@@ -115,6 +119,103 @@ Vote VoteFor(const MatchSupportOptions& options, const Prediction& prediction,
   return opposes ? Vote::kOpposes : Vote::kNeither;
 }
 
+// Finds matches that are certain together.
+class GroupFinder {
+ public:
+  GroupFinder(const MatchSupportOptions& options, const NeighbourhoodMaps& maps,
+              const std::vector<Match>& matches)
+      : options_(options), maps_(maps), matches_(matches) {
+    for (size_t k = 0; k < matches.size(); ++k) {
+      if (MayJoin(matches[k])) indices_.emplace(IdsOf(matches[k]), k);
+    }
+  }
+
+  // Returns their indices.
+  [[nodiscard]] std::vector<size_t> Find() const {
+    std::vector<size_t> certain;
+    std::set<size_t> seen;
+    for (const auto& entry : indices_) {
+      if (seen.count(entry.second) > 0) continue;
+      const std::vector<size_t> group = GroupOf(entry.second, &seen);
+      if (IsCertainTogether(group)) {
+        certain.insert(certain.end(), group.begin(), group.end());
+      }
+    }
+    return certain;
+  }
+
+ private:
+  [[nodiscard]] static IdPair IdsOf(const Match& match) {
+    return {match.pair.reference, match.pair.query};
+  }
+
+  // Whether it is likely, and suits no other pose and no other place.
+  [[nodiscard]] bool MayJoin(const Match& match) const {
+    return (match.verdict == Verdict::kAccepted ||
+            match.verdict == Verdict::kUnlikely) &&
+           match.pair.score >= options_.min_supported_score &&
+           !match.has_rival && match.margin >= kMaxMargin;
+  }
+
+  // The match, and all that it supports and those support; adds them to `seen`.
+  [[nodiscard]] std::vector<size_t> GroupOf(
+      const size_t first, std::set<size_t>* const seen) const {
+    std::vector<size_t> group = {first};
+    seen->insert(first);
+    for (size_t next = 0; next < group.size(); ++next) {
+      VisitMatchesAround(options_, maps_, indices_, matches_[group[next]].pair,
+                         [&](const size_t k, const Prediction& prediction) {
+                           if (VoteFor(options_, prediction,
+                                       matches_[k].pair.T_reference_query) ==
+                                   Vote::kSupports &&
+                               seen->insert(k).second) {
+                             group.push_back(k);
+                           }
+                         });
+    }
+    return group;
+  }
+
+  // Whether the best of the group that share no scans are worth a certain one.
+  [[nodiscard]] bool IsCertainTogether(std::vector<size_t> group) const {
+    std::sort(
+        group.begin(), group.end(), [this](const size_t a, const size_t b) {
+          const PairPose& first = matches_[a].pair;
+          const PairPose& second = matches_[b].pair;
+          return first.score != second.score ? first.score > second.score
+                                             : IsBeforeByIds(first, second);
+        });
+    std::vector<const PairPose*> counted;
+    double score = 0.;
+    for (const size_t k : group) {
+      const PairPose& pair = matches_[k].pair;
+      const bool is_counted = std::any_of(
+          counted.begin(), counted.end(),
+          [&](const PairPose* other) { return ShareScans(pair, *other); });
+      if (is_counted) continue;
+      counted.push_back(&pair);
+      score += pair.score;
+      if (score >= options_.min_unsupported_score) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool ShareScans(const PairPose& a, const PairPose& b) const {
+    const auto share = [](const SubmapId& one, const SubmapId& other) {
+      return one.trajectory == other.trajectory &&
+             std::abs(one.index - other.index) < kMinIndexDistance;
+    };
+    return share(a.reference, b.reference) || share(a.query, b.query) ||
+           (maps_.min_index_gap &&
+            (share(a.reference, b.query) || share(a.query, b.reference)));
+  }
+
+  const MatchSupportOptions& options_;
+  const NeighbourhoodMaps& maps_;
+  const std::vector<Match>& matches_;
+  MatchIndices indices_;
+};
+
 }  // namespace
 
 std::string Validate(const MatchSupportOptions& options) {
@@ -139,13 +240,16 @@ void JudgeBySupport(const MatchSupportOptions& options,
                     std::vector<Match>* const matches) {
   CHECK_EQ(Validate(options), "");
   MatchIndices indices;
-  std::vector<size_t> supporting;
+  std::vector<size_t> supporting = GroupFinder(options, maps, *matches).Find();
+  std::set<size_t> is_supporting(supporting.begin(), supporting.end());
   for (size_t k = 0; k < matches->size(); ++k) {
     Match& match = (*matches)[k];
     indices.emplace(IdPair(match.pair.reference, match.pair.query), k);
     match.num_supporting = 0;
     match.num_opposing = 0;
-    if (IsCertain(options, match)) supporting.push_back(k);
+    if (IsCertain(options, match) && is_supporting.insert(k).second) {
+      supporting.push_back(k);
+    }
   }
   // Grows, as what is supported supports in its turn.
   for (size_t next = 0; next < supporting.size(); ++next) {
@@ -157,9 +261,9 @@ void JudgeBySupport(const MatchSupportOptions& options,
               VoteFor(options, prediction, match.pair.T_reference_query);
           if (vote == Vote::kOpposes) ++*match.num_opposing;
           if (vote != Vote::kSupports) return;
-          const bool is_first = ++*match.num_supporting == 1;
-          if (is_first && match.verdict == Verdict::kAccepted &&
-              !IsCertain(options, match)) {
+          ++*match.num_supporting;
+          if (match.verdict == Verdict::kAccepted &&
+              is_supporting.insert(k).second) {
             supporting.push_back(k);
           }
         });

@@ -10,6 +10,12 @@
 // is: shifts by one rack or one door agree with the walls and disagree with
 // what lies around.
 //
+// Matches that are only likely are certain together where they support each
+// other, none of them has any rival, and those of them that share no scans add
+// up to the evidence of a certain one: outdoors and in long halls no submap
+// alone shows that much. Where rooms are equal every match has rivals, at which
+// its walls do nearly as well, and many of them say no more than one.
+//
 // One threshold for all could not do both. In noisy maps and outdoors, most
 // right matches are only likely, but near some that are certain. Between
 // different buildings, two bare corners or corridors may be likely, and nothing
@@ -27,8 +33,8 @@
 namespace cartographer_sdf {
 
 struct MatchSupportOptions {
-  // Least score of a match that stands alone; log-odds. Such a match is
-  // certain.
+  // Least score of a match that stands alone, or sum of those of a group;
+  // log-odds. Such a match is certain.
   double min_unsupported_score = 7.;
   // Least score of a match that others support; log-odds. Above
   // JudgementOptions::min_score it supports in its turn.
@@ -45,7 +51,8 @@ struct MatchSupportOptions {
 };
 [[nodiscard]] std::string Validate(const MatchSupportOptions& options);
 
-// Sets Match::num_supporting and num_opposing. Matches that were accepted and
+// Sets Match::num_supporting and num_opposing, by the votes of those that are
+// certain and what they support. Matches that were accepted and
 // are opposed by more than twice as many as support them, or have no support
 // and are not certain, become kUncertain; those that were kUnlikely, have
 // support, are not opposed by so many, and have no rival become kAccepted.

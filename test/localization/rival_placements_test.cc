@@ -77,21 +77,5 @@ TEST(RivalPlacementsTest, RoomsThatDifferHaveNone) {
   EXPECT_THAT(FindRivals(map, query).rivals, IsEmpty());
 }
 
-// Where the corridor ends in one map, the robot drove on in the other.
-TEST(RivalPlacementsTest, ItNeedNotHaveDrivenThroughAWall) {
-  const Building row = RowOfRooms();
-  const MapOfRow query = SeeRooms(row, 3., 13.);
-  MapOfRow map = SeeRooms(row, -2., 13.);
-  const auto is_shift_to_the_end = DoubleNear(kRoom, 0.05);
-  EXPECT_THAT(Shifts(FindRivals(map, query).rivals),
-              Not(Contains(is_shift_to_the_end)));
-  // Seen from afar, nothing is known of where the robot was.
-  map.layout.ways.clear();
-  MapOfRow unknown = query;
-  unknown.layout.ways.clear();
-  EXPECT_THAT(Shifts(FindRivals(map, unknown).rivals),
-              Contains(is_shift_to_the_end));
-}
-
 }  // namespace
 }  // namespace cartographer_sdf::rival_placements_test

@@ -7,7 +7,6 @@
 #ifndef TEST_TESTING_ROW_OF_ROOMS_H_
 #define TEST_TESTING_ROW_OF_ROOMS_H_
 
-#include <cmath>
 #include <map>
 #include <utility>
 
@@ -61,13 +60,6 @@ inline MapOfRow SeeRooms(const Building& building, const double first,
   FindSelfSimilarities(MatchOptions(), &place);
   PoseGraph graph;
   graph.submap_poses[id] = Rigid2();
-  for (double x = first; x <= last; x += 0.5) {
-    Constraint constraint;
-    constraint.submap = id;
-    constraint.node = {0, static_cast<int>(std::lround(2. * (x - first)))};
-    constraint.T_submap_node = Rigid2(x, 1.3, 0.);
-    graph.constraints.push_back(constraint);
-  }
   MapOfRow map;
   map.places.emplace(id, std::move(place));
   map.layout = MakeMapLayout(graph, {{id, OdometryPose()}}, map.places);
