@@ -24,6 +24,9 @@ constexpr double kRotationDriftPerSqrtMeter = 0.01;
 // So many times as many as support a match must oppose it to refuse it: what
 // opposes may be wrong as well, or a submap between bent.
 constexpr int kOutvotingRatio = 2;
+// What matches that are certain together add up to, beyond a certain one: the
+// score of each holds what its neighbours, which count as well, say of it.
+constexpr double kGroupSurplus = 2.;
 // Submaps so many indices apart share no scans.
 constexpr int kMinIndexDistance = 2;
 
@@ -149,9 +152,11 @@ class GroupFinder {
     return {match.pair.reference, match.pair.query};
   }
 
-  // Whether it is likely, and suits no other pose and no other place.
+  // Whether it is likely, not certain by itself, and suits no other pose and no
+  // other place.
   [[nodiscard]] bool MayJoin(const Match& match) const {
-    return (match.verdict == Verdict::kAccepted ||
+    return !IsCertain(options_, match) &&
+           (match.verdict == Verdict::kAccepted ||
             match.verdict == Verdict::kUnlikely) &&
            match.pair.score >= options_.min_supported_score &&
            !match.has_rival && match.margin >= kMaxMargin;
@@ -195,7 +200,7 @@ class GroupFinder {
       if (is_counted) continue;
       counted.push_back(&pair);
       score += pair.score;
-      if (score >= options_.min_unsupported_score) return true;
+      if (score >= options_.min_unsupported_score + kGroupSurplus) return true;
     }
     return false;
   }

@@ -12,9 +12,9 @@
 //
 // Matches that are only likely are certain together where they support each
 // other, none of them has any rival, and those of them that share no scans add
-// up to the evidence of a certain one: outdoors and in long halls no submap
-// alone shows that much. Where rooms are equal every match has rivals, at which
-// its walls do nearly as well, and many of them say no more than one.
+// up to more than the evidence of a certain one: outdoors and in long halls no
+// submap alone shows that much. Where rooms are equal every match has rivals,
+// at which its walls do nearly as well, and many of them say no more than one.
 //
 // One threshold for all could not do both. In noisy maps and outdoors, most
 // right matches are only likely, but near some that are certain. Between
@@ -33,8 +33,8 @@
 namespace cartographer_sdf {
 
 struct MatchSupportOptions {
-  // Least score of a match that stands alone, or sum of those of a group;
-  // log-odds. Such a match is certain.
+  // Least score of a match that stands alone; log-odds. Such a match is
+  // certain. Those of a group must add up to two more.
   double min_unsupported_score = 7.;
   // Least score of a match that others support; log-odds. Above
   // JudgementOptions::min_score it supports in its turn.

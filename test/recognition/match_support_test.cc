@@ -194,12 +194,12 @@ TEST(JudgeBySupportTest, LikelyOnesWithoutRivalsAreCertainTogether) {
   const CorridorMap corridor;
   for (const NeighbourhoodMaps& maps :
        {corridor.Within(), corridor.Between()}) {
-    EXPECT_THAT(Verdicts(maps, Together(3.5, 3.5)),
+    EXPECT_THAT(Verdicts(maps, Together(4.5, 4.5)),
                 ElementsAre("accepted", "accepted"));
-    EXPECT_THAT(Verdicts(maps, Together(3.5, 3.4)),
+    EXPECT_THAT(Verdicts(maps, Together(4.5, 4.4)),
                 ElementsAre("unlikely", "unlikely"));
-    // They support others, as a certain one does, but these do not add to it.
-    std::vector<Match> matches = Together(3.6, 3.6);
+    // They support others, as a certain one does.
+    std::vector<Match> matches = Together(4.6, 4.6);
     matches.push_back(Unlikely(4, 14, kSame, 1.));
     EXPECT_THAT(Verdicts(maps, matches),
                 ElementsAre("accepted", "accepted", "accepted"));
@@ -211,11 +211,11 @@ TEST(JudgeBySupportTest, LikelyOnesWithoutRivalsAreCertainTogether) {
 
 TEST(JudgeBySupportTest, WhatIsCertainTogetherHasNoRivalElsewhere) {
   const CorridorMap corridor;
-  std::vector<Match> matches = Together(3.6, 3.6);
+  std::vector<Match> matches = Together(4.6, 4.6);
   matches[0].has_rival = true;
   EXPECT_THAT(Verdicts(corridor.Within(), matches),
               ElementsAre("unlikely", "unlikely"));
-  matches = Together(3.6, 3.6);
+  matches = Together(4.6, 4.6);
   matches[0].verdict = Verdict::kContradicted;
   EXPECT_THAT(Verdicts(corridor.Within(), matches),
               ElementsAre("contradicted", "unlikely"));
@@ -228,27 +228,27 @@ TEST(JudgeBySupportTest, SubmapsThatShareScansCountOnce) {
     // Many that overlap say no more than the best of them, ...
     EXPECT_THAT(
         Verdicts(maps,
-                 {WithoutRival(Unlikely(0, 10, kSame, 3.9)),
-                  WithoutRival(Unlikely(1, 11, kSame, 3.9)),
-                  WithoutRival(Unlikely(1, 10, Rigid2(-10., 0., 0.), 3.9)),
-                  WithoutRival(Unlikely(0, 11, Rigid2(10., 0., 0.), 3.9))}),
+                 {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                  WithoutRival(Unlikely(1, 11, kSame, 4.9)),
+                  WithoutRival(Unlikely(1, 10, Rigid2(-10., 0., 0.), 4.9)),
+                  WithoutRival(Unlikely(0, 11, Rigid2(10., 0., 0.), 4.9))}),
         Each("unlikely"));
     // ... also where they do on one side only, or through others between.
     EXPECT_THAT(
         Verdicts(maps,
-                 {WithoutRival(Unlikely(0, 10, kSame, 3.9)),
-                  WithoutRival(Unlikely(3, 11, Rigid2(-20., 0., 0.), 3.9))}),
+                 {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                  WithoutRival(Unlikely(3, 11, Rigid2(-20., 0., 0.), 4.9))}),
         Each("unlikely"));
-    EXPECT_THAT(Verdicts(maps, {WithoutRival(Unlikely(0, 10, kSame, 3.)),
+    EXPECT_THAT(Verdicts(maps, {WithoutRival(Unlikely(0, 10, kSame, 4.)),
                                 WithoutRival(Unlikely(1, 11, kSame, 2.)),
-                                WithoutRival(Unlikely(2, 12, kSame, 3.)),
+                                WithoutRival(Unlikely(2, 12, kSame, 4.)),
                                 WithoutRival(Unlikely(4, 14, kSame, 1.))}),
                 Each("accepted"));
   }
   // Within one map, either submap of a pair may be the reference.
   const std::vector<Match> crossed = {
-      WithoutRival(Unlikely(0, 10, kSame, 3.9)),
-      WithoutRival(Unlikely(11, 1, kSame, 3.9))};
+      WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+      WithoutRival(Unlikely(11, 1, kSame, 4.9))};
   EXPECT_THAT(Verdicts(corridor.Within(), crossed), Each("unlikely"));
 }
 
@@ -256,13 +256,13 @@ TEST(JudgeBySupportTest, OnlyMatchesThatAgreeAreCertainTogether) {
   const CorridorMap corridor;
   EXPECT_THAT(
       Verdicts(corridor.Within(),
-               {WithoutRival(Unlikely(0, 10, kSame, 3.9)),
-                WithoutRival(Unlikely(2, 12, Rigid2(0.6, 0., 0.), 3.9))}),
+               {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                WithoutRival(Unlikely(2, 12, Rigid2(0.6, 0., 0.), 4.9))}),
       Each("unlikely"));
   // Nor far ones.
   EXPECT_THAT(
-      Verdicts(corridor.Within(), {WithoutRival(Unlikely(0, 10, kSame, 3.9)),
-                                   WithoutRival(Unlikely(5, 15, kSame, 3.9))}),
+      Verdicts(corridor.Within(), {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                                   WithoutRival(Unlikely(5, 15, kSame, 4.9))}),
       Each("unlikely"));
 }
 
