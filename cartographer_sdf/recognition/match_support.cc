@@ -152,11 +152,9 @@ class GroupFinder {
     return {match.pair.reference, match.pair.query};
   }
 
-  // Whether it is likely, not certain by itself, and suits no other pose and no
-  // other place.
+  // Whether it is likely, and suits no other pose and no other place.
   [[nodiscard]] bool MayJoin(const Match& match) const {
-    return !IsCertain(options_, match) &&
-           (match.verdict == Verdict::kAccepted ||
+    return (match.verdict == Verdict::kAccepted ||
             match.verdict == Verdict::kUnlikely) &&
            match.pair.score >= options_.min_supported_score &&
            !match.has_rival && match.margin >= kMaxMargin;
@@ -181,8 +179,14 @@ class GroupFinder {
     return group;
   }
 
-  // Whether the best of the group that share no scans are worth a certain one.
+  // Whether the best of the group that share no scans are worth more than a
+  // certain one. One with a certain match needs no other: that supports it.
   [[nodiscard]] bool IsCertainTogether(std::vector<size_t> group) const {
+    if (std::any_of(group.begin(), group.end(), [this](const size_t k) {
+          return IsCertain(options_, matches_[k]);
+        })) {
+      return false;
+    }
     std::sort(
         group.begin(), group.end(), [this](const size_t a, const size_t b) {
           const PairPose& first = matches_[a].pair;

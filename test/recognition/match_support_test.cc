@@ -209,6 +209,16 @@ TEST(JudgeBySupportTest, LikelyOnesWithoutRivalsAreCertainTogether) {
   }
 }
 
+TEST(JudgeBySupportTest, WhatACertainMatchReachesItSupportsByItself) {
+  const CorridorMap corridor;
+  // Submap 4 supports 8, which is only likely and supports no other.
+  std::vector<Match> matches = {WithoutRival(AcceptedMatch(4, 4, kSame, 7.)),
+                                WithoutRival(Unlikely(8, 8, kSame, 3.9)),
+                                WithoutRival(Unlikely(12, 12, kSame, 3.9))};
+  EXPECT_THAT(Verdicts(corridor.Between(), matches),
+              ElementsAre("accepted", "accepted", "unlikely"));
+}
+
 TEST(JudgeBySupportTest, WhatIsCertainTogetherHasNoRivalElsewhere) {
   const CorridorMap corridor;
   std::vector<Match> matches = Together(4.6, 4.6);
