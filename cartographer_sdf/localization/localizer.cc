@@ -303,14 +303,11 @@ class Localizer {
         longest.query.trajectory, longest.query.index);
   }
 
-  // Scores are sums that grow with what was seen of one place, right or wrong:
-  // a rival that would be certain by itself, with half the evidence of the
-  // best, is as good a reason to doubt as one just behind it.
+  // With so much evidence it is as good a reason to doubt as one just behind.
   [[nodiscard]] bool IsCertainRival(const Placement& best,
                                     const Placement& rival) const {
-    constexpr double kShare = 0.5;
     return rival.score >= task_.placement.min_score &&
-           rival.score >= kShare * best.score;
+           rival.score >= kRivalShare * best.score;
   }
 
   void Decide() {

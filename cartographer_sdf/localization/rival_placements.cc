@@ -84,8 +84,7 @@ bool IsPossible(const PlacementOptions& options,
 // Whether it does as well as the other.
 bool IsRival(const PlacementOptions& options, const MeasuredPlacement& rival,
              const MeasuredPlacement& other) {
-  constexpr double kShare = 0.5;
-  return rival.placement.score >= kShare * other.placement.score &&
+  return rival.placement.score >= kRivalShare * other.placement.score &&
          other.placement.score - rival.placement.score < options.min_lead;
 }
 

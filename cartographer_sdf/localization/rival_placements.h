@@ -20,6 +20,11 @@
 
 namespace cartographer_sdf {
 
+// A rival with this share of the evidence of the best placement is a reason to
+// doubt that. Scores are sums that grow with what was seen of one place, right
+// or wrong.
+constexpr double kRivalShare = 0.5;
+
 // A placement by what the walls say where it makes the maps overlap.
 struct MeasuredPlacement {
   // As MeasurePlacement(); its agreeing pairs are what the placement's votes
@@ -29,10 +34,10 @@ struct MeasuredPlacement {
 };
 
 // The placement that `votes` agree on, and those that do as well on what both
-// maps show: those that reach half of its score, that it leads by less than
-// PlacementOptions::min_lead, and that are neither contradicted nor crossed by
-// walls (PlacementOptions). Best first, at most three. Verifies at most
-// `max_num_pairs` pairs for each, beside those of the votes.
+// maps show: those that reach kRivalShare of its score, that it leads by less
+// than PlacementOptions::min_lead, and that are neither contradicted nor
+// crossed by walls (PlacementOptions). Best first, at most three. Verifies at
+// most `max_num_pairs` pairs for each, beside those of the votes.
 struct Contest {
   MeasuredPlacement placement;  // not measured if it has no rivals
   std::vector<MeasuredPlacement> rivals;
