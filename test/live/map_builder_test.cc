@@ -3,6 +3,7 @@
 
 #include "cartographer_sdf/live/map_builder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -166,6 +167,44 @@ TEST(MapBuilderTest, DetectsWithoutInjectingOnRequest) {
   for (const auto& constraint : map_builder->pose_graph()->constraints()) {
     EXPECT_EQ(constraint.tag, HostConstraint::INTRA_SUBMAP);
   }
+}
+
+TEST(MapBuilderTest, ReportsClosuresOfDeletedTrajectories) {
+  const auto stock = MakeStockOptions(kWithoutOwnSearch);
+  const auto map_builder = CreateMapBuilder(
+      mapping::CreateMapBuilder(stock.map_builder), LiveOptions());
+  LiveMapBuilder* const live = AsLiveMapBuilder(map_builder.get());
+  const int trajectory_id = map_builder->AddTrajectoryBuilder(
+      SensorIds(), stock.trajectory_builder, nullptr);
+  Robot robot(map_builder.get(), trajectory_id, 1);
+  robot.Drive(TheDrivenOffice().poses);
+  map_builder->FinishTrajectory(trajectory_id);
+  map_builder->pose_graph()->RunFinalOptimization();
+  const std::vector<ClosureRecord> before = live->GetClosures();
+  ASSERT_GE(before.size(), 3u);
+  EXPECT_EQ(live->GetSummary().num_closures, static_cast<int>(before.size()));
+
+  map_builder->pose_graph()->DeleteTrajectory(trajectory_id);
+  live->WaitUntilIdle();
+  const std::vector<ClosureRecord> after = live->GetClosures();
+  EXPECT_EQ(live->GetSummary().num_closures, static_cast<int>(before.size()));
+  ASSERT_EQ(after.size(), before.size());
+  int num_in_graph = 0;
+  for (const ClosureRecord& closure : before) {
+    const auto same = std::find_if(
+        after.begin(), after.end(), [&closure](const ClosureRecord& other) {
+          return other.pair.reference == closure.pair.reference &&
+                 other.pair.query == closure.pair.query;
+        });
+    ASSERT_NE(same, after.end());
+    EXPECT_EQ(same->pair.score, closure.pair.score);
+    EXPECT_EQ(same->num_inliers, closure.num_inliers);
+    if (closure.status != ClosureStatus::kInGraph) continue;
+    EXPECT_EQ(same->status, ClosureStatus::kInGraph);
+    EXPECT_EQ(same->num_constraints, closure.num_constraints);
+    ++num_in_graph;
+  }
+  EXPECT_GE(num_in_graph, 3);
 }
 
 class LocalizationTest : public ::testing::Test {
