@@ -179,14 +179,16 @@ class GroupFinder {
     return group;
   }
 
-  // Whether the best of the group that share no scans are worth more than a
-  // certain one. One with a certain match needs no other: that supports it.
+  // Whether one of the group is accepted, and its best that share no scans are
+  // worth more than a certain one. One with a certain match needs no other:
+  // that supports it.
   [[nodiscard]] bool IsCertainTogether(std::vector<size_t> group) const {
-    if (std::any_of(group.begin(), group.end(), [this](const size_t k) {
-          return IsCertain(options_, matches_[k]);
-        })) {
-      return false;
+    bool has_accepted = false;
+    for (const size_t k : group) {
+      if (IsCertain(options_, matches_[k])) return false;
+      has_accepted |= matches_[k].verdict == Verdict::kAccepted;
     }
+    if (!has_accepted) return false;
     std::sort(
         group.begin(), group.end(), [this](const size_t a, const size_t b) {
           const PairPose& first = matches_[a].pair;

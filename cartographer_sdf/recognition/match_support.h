@@ -11,10 +11,11 @@
 // what lies around.
 //
 // Matches that are only likely are certain together where they support each
-// other, none of them has any rival, and those of them that share no scans add
-// up to more than the evidence of a certain one: outdoors and in long halls no
-// submap alone shows that much. Where rooms are equal every match has rivals,
-// at which its walls do nearly as well, and many of them say no more than one.
+// other, one of them is accepted, none of them has any rival, and those of them
+// that share no scans add up to more than the evidence of a certain one:
+// outdoors and in long halls no submap alone shows that much. Where rooms are
+// equal every match has rivals, at which its walls do nearly as well, and many
+// of them say no more than one.
 //
 // One threshold for all could not do both. In noisy maps and outdoors, most
 // right matches are only likely, but near some that are certain. Between

@@ -16,10 +16,12 @@ namespace cartographer_sdf::match_support_test {
 namespace {
 
 using testing::AcceptedMatch;
+using ::testing::Contains;
 using testing::CorridorMap;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // Found, and too unlikely to be accepted by itself.
 Match Unlikely(const int reference, const int query, const Rigid2& pose,
@@ -184,9 +186,9 @@ Match WithoutRival(Match match) {
   return match;
 }
 
-// What is likely, in two places that share no scans.
+// What is likely, in two places that share no scans; the first is accepted.
 std::vector<Match> Together(const double first, const double second) {
-  return {WithoutRival(Unlikely(0, 10, kSame, first)),
+  return {WithoutRival(AcceptedMatch(0, 10, kSame, first)),
           WithoutRival(Unlikely(2, 12, kSame, second))};
 }
 
@@ -197,7 +199,7 @@ TEST(JudgeBySupportTest, LikelyOnesWithoutRivalsAreCertainTogether) {
     EXPECT_THAT(Verdicts(maps, Together(4.5, 4.5)),
                 ElementsAre("accepted", "accepted"));
     EXPECT_THAT(Verdicts(maps, Together(4.5, 4.4)),
-                ElementsAre("unlikely", "unlikely"));
+                ElementsAre("uncertain", "unlikely"));
     // They support others, as a certain one does.
     std::vector<Match> matches = Together(4.6, 4.6);
     matches.push_back(Unlikely(4, 14, kSame, 1.));
@@ -205,7 +207,11 @@ TEST(JudgeBySupportTest, LikelyOnesWithoutRivalsAreCertainTogether) {
                 ElementsAre("accepted", "accepted", "accepted"));
     matches[1].margin = 0.99 * kMaxMargin;
     EXPECT_THAT(Verdicts(maps, matches),
-                ElementsAre("unlikely", "unlikely", "unlikely"));
+                ElementsAre("uncertain", "unlikely", "unlikely"));
+    // One of them must be accepted by itself.
+    matches = Together(4.6, 4.6);
+    matches[0].verdict = Verdict::kUnlikely;
+    EXPECT_THAT(Verdicts(maps, matches), ElementsAre("unlikely", "unlikely"));
   }
 }
 
@@ -224,7 +230,7 @@ TEST(JudgeBySupportTest, WhatIsCertainTogetherHasNoRivalElsewhere) {
   std::vector<Match> matches = Together(4.6, 4.6);
   matches[0].has_rival = true;
   EXPECT_THAT(Verdicts(corridor.Within(), matches),
-              ElementsAre("unlikely", "unlikely"));
+              ElementsAre("uncertain", "unlikely"));
   matches = Together(4.6, 4.6);
   matches[0].verdict = Verdict::kContradicted;
   EXPECT_THAT(Verdicts(corridor.Within(), matches),
@@ -238,18 +244,18 @@ TEST(JudgeBySupportTest, SubmapsThatShareScansCountOnce) {
     // Many that overlap say no more than the best of them, ...
     EXPECT_THAT(
         Verdicts(maps,
-                 {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                 {WithoutRival(AcceptedMatch(0, 10, kSame, 4.9)),
                   WithoutRival(Unlikely(1, 11, kSame, 4.9)),
                   WithoutRival(Unlikely(1, 10, Rigid2(-10., 0., 0.), 4.9)),
                   WithoutRival(Unlikely(0, 11, Rigid2(10., 0., 0.), 4.9))}),
-        Each("unlikely"));
+        Not(Contains("accepted")));
     // ... also where they do on one side only, or through others between.
     EXPECT_THAT(
         Verdicts(maps,
-                 {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+                 {WithoutRival(AcceptedMatch(0, 10, kSame, 4.9)),
                   WithoutRival(Unlikely(3, 11, Rigid2(-20., 0., 0.), 4.9))}),
-        Each("unlikely"));
-    EXPECT_THAT(Verdicts(maps, {WithoutRival(Unlikely(0, 10, kSame, 4.)),
+        Not(Contains("accepted")));
+    EXPECT_THAT(Verdicts(maps, {WithoutRival(AcceptedMatch(0, 10, kSame, 4.)),
                                 WithoutRival(Unlikely(1, 11, kSame, 2.)),
                                 WithoutRival(Unlikely(2, 12, kSame, 4.)),
                                 WithoutRival(Unlikely(4, 14, kSame, 1.))}),
@@ -257,23 +263,23 @@ TEST(JudgeBySupportTest, SubmapsThatShareScansCountOnce) {
   }
   // Within one map, either submap of a pair may be the reference.
   const std::vector<Match> crossed = {
-      WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+      WithoutRival(AcceptedMatch(0, 10, kSame, 4.9)),
       WithoutRival(Unlikely(11, 1, kSame, 4.9))};
-  EXPECT_THAT(Verdicts(corridor.Within(), crossed), Each("unlikely"));
+  EXPECT_THAT(Verdicts(corridor.Within(), crossed), Not(Contains("accepted")));
 }
 
 TEST(JudgeBySupportTest, OnlyMatchesThatAgreeAreCertainTogether) {
   const CorridorMap corridor;
   EXPECT_THAT(
       Verdicts(corridor.Within(),
-               {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
+               {WithoutRival(AcceptedMatch(0, 10, kSame, 4.9)),
                 WithoutRival(Unlikely(2, 12, Rigid2(0.6, 0., 0.), 4.9))}),
-      Each("unlikely"));
+      Not(Contains("accepted")));
   // Nor far ones.
-  EXPECT_THAT(
-      Verdicts(corridor.Within(), {WithoutRival(Unlikely(0, 10, kSame, 4.9)),
-                                   WithoutRival(Unlikely(5, 15, kSame, 4.9))}),
-      Each("unlikely"));
+  EXPECT_THAT(Verdicts(corridor.Within(),
+                       {WithoutRival(AcceptedMatch(0, 10, kSame, 4.9)),
+                        WithoutRival(Unlikely(5, 15, kSame, 4.9))}),
+              Not(Contains("accepted")));
 }
 
 TEST(JudgeBySupportTest, OtherReasonsForRefusalStay) {
