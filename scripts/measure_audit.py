@@ -21,7 +21,8 @@ import resource
 import subprocess
 import sys
 
-from measuring import DATA_DIR, SOURCE_DIR, commit_name, read_csv
+from measuring import (DATA_DIR, SOURCE_DIR, commit_name, compose, inverse,
+                       read_csv)
 
 KINDS = ["corridor", "door", "half_turn", "twin", "row", "random"]
 # Pairs of submaps of each kind, and seeds.
@@ -38,16 +39,6 @@ MAPS = {
     "office_2": (None, None, True),
 }
 USER_MAPS = ["user_map_arena", "user_map_odometry", "user_map_two_sessions"]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (-c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2])
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])
 
 
 def angle(a):

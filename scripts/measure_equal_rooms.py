@@ -22,8 +22,8 @@ import random
 import sys
 
 import make_campus
-from measuring import (PROGRAM, Failure, check_program, commit_name, processor,
-                       read_csv, run)
+from measuring import (PROGRAM, Failure, check_program, commit_name, compose,
+                       inverse, processor, read_csv, run)
 
 # An answer is wrong if its typical match is farther off [m], [rad].
 WRONG_METERS, WRONG_RADIANS = 1., math.radians(10.)
@@ -110,16 +110,6 @@ def simulate(program, directory, name, plan, seed, length):
             make_campus.RESOLUTION, "--seed", seed, "--length", length, "--output",
             stem.with_suffix(".pbstream"), "--truth", stem.with_suffix(".csv"))
     return stem
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
 
 
 def true_poses(stem):

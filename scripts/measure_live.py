@@ -37,6 +37,8 @@ import sys
 import tempfile
 import zlib
 
+from measuring import compose, inverse
+
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD_DIR", SOURCE / "build"))
 DATA = pathlib.Path(os.environ.get("DATA_DIR", SOURCE / ".." / "shared" / "data"))
@@ -184,18 +186,6 @@ def read_truth(path, kind):
         return {int(row["index"]): tuple(float(row[k]) for k in ("x", "y", "yaw"))
                 for row in csv.DictReader(file)
                 if row["kind"] == kind and row["trajectory"] == "0"}
-
-
-def compose(a, b):
-    """T_a_c of T_a_b and T_b_c."""
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2])
-
-
-def inverse(a):
-    """T_b_a of T_a_b."""
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return (-c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2])
 
 
 class OtherBuilding:

@@ -25,6 +25,7 @@ import tempfile
 
 import measuring
 import split_map
+from measuring import compose, inverse
 
 # Right, and wrong: a pose that is off by more. Between lies what maps bend.
 RIGHT_METERS, RIGHT_DEGREES, WRONG_METERS, WRONG_DEGREES = .5, 10., 1., 15.
@@ -73,16 +74,6 @@ FOLDS = {"two_fold": 2, "four_fold": 4}
 # Drives through a simulated office of 22,000 m2.
 SIMULATED = {"large_%d" % seed: ("--plan_width", 200, "--plan_height", 110, "--length", length, "--seed", seed)
              for seed, length in ((1, 5000), (2, 600))}
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
 
 
 def error(a, b):

@@ -22,6 +22,8 @@ import subprocess
 import sys
 import tempfile
 
+from measuring import compose, inverse
+
 HERE = pathlib.Path(__file__).resolve().parent
 # Wrong: a pose that is off by more where the submaps meet.
 WRONG_METERS, WRONG_DEGREES = 1., 10.
@@ -46,16 +48,6 @@ MERGES = [("tsc_2016", "tsc_2017"), ("labc_bare1", "labc_d3a"), ("fhw_1", "fhw_2
           ("tinyslam_exp1", "tinyslam_exp2", "tinyslam_exp3", "tinyslam_exp4"),
           ("officec_R", "officec_L"), ("officec_L", "officec_R"),
           ("field/arena_2", "field/bare_corner"), ("field/bare_corner", "field/arena_2")]
-
-
-def compose(a, b):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
-
-
-def inverse(a):
-    c, s = math.cos(a[2]), math.sin(a[2])
-    return -c * a[0] - s * a[1], s * a[0] - c * a[1], -a[2]
 
 
 def read_truth(path):

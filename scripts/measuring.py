@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The cartographer_sdf authors
 # SPDX-License-Identifier: Apache-2.0
 """What scripts that measure and report share: where they are, the maps that have
-a truth, how they run the program, and by what a report says how it was made."""
+a truth, poses, how they run the program, and by what a report says how it was made."""
 
 import csv
+import math
 import os
 import pathlib
 import shlex
@@ -58,6 +59,19 @@ BETWEEN = [between(*names) for names in (
     ("labc_bare1", "labc_furn"), ("labc_bare1", "labc_d3a"),
     ("officec_R", "officec_L"), ("officec_L", "officec_R"),
     ("field/floor_4", "field/floor_6"), ("field/twins3_1", "field/twins3_2"))]
+
+
+def compose(T_a_b, T_b_c):
+    """T_a_c; a pose is (x, y, yaw) [m, rad]."""
+    c, s = math.cos(T_a_b[2]), math.sin(T_a_b[2])
+    return (T_a_b[0] + c * T_b_c[0] - s * T_b_c[1],
+            T_a_b[1] + s * T_b_c[0] + c * T_b_c[1], T_a_b[2] + T_b_c[2])
+
+
+def inverse(T_a_b):
+    """T_b_a."""
+    c, s = math.cos(T_a_b[2]), math.sin(T_a_b[2])
+    return (-c * T_a_b[0] - s * T_a_b[1], s * T_a_b[0] - c * T_a_b[1], -T_a_b[2])
 
 
 def read_csv(path):
