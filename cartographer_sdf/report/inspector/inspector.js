@@ -579,6 +579,9 @@ function drawDivider(context) {
 function drawNow() {
   const context = canvas.getContext("2d");
   const ratio = devicePixelRatio || 1;
+  // A drawing starts with the same state whatever was drawn before it.
+  context.save();
+  context.lineJoin = "round";
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, view.width, view.height);
   const parts = states.length > 1
@@ -594,6 +597,7 @@ function drawNow() {
   }
   drawDivider(context);
   drawScale(context);
+  context.restore();
 }
 let isWaiting = false;
 function draw() {
