@@ -187,6 +187,18 @@ SDF_GLOBAL_CONSTRAINTS = {
             -- face one way only (a corridor), 0.5 where they face all ways.
             min_scatter_eigenvalue = 0.03,
           },
+          -- What refuses matches between two trajectories, and the answers of
+          -- relocalize and merge, where they agree with each other and not with
+          -- the walls.
+          crossing = {
+            -- [m] Two submaps cannot show the same place if a longer straight
+            -- wall of one stands across the free space of the other. Larger:
+            -- tolerates partitions that were moved.
+            max_wall_meters = 3.,
+            -- Largest fraction of the pairs of submaps that overlap that such
+            -- a wall may cross. Larger: tolerates torn submaps.
+            max_crossed_fraction = 0.05,
+          },
         },
         -- [m] Keypoints this close under the final pose are reported as
         -- inliers.
@@ -465,13 +477,6 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- Largest fraction of the submaps that may contradict the answer. Larger:
       -- tolerates more change since the map was made.
       max_contradicting_fraction = 0.3,
-      -- [m] Two submaps cannot show the same place if a longer straight wall of
-      -- one stands across the free space of the other. Larger: tolerates
-      -- partitions that were moved.
-      max_crossing_wall_meters = 3.,
-      -- Largest fraction of the pairs of submaps that the answer makes overlap
-      -- that such a wall may cross. Larger: tolerates torn submaps.
-      max_crossed_fraction = 0.05,
       -- [m], [rad] Answers that differ by less count as the same. Larger:
       -- tolerates more drift within the map, but overlooks look-alikes close
       -- by.

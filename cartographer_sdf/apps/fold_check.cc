@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/apps/map_quality.h"
 #include "cartographer_sdf/localization/confirmation.h"
+#include "cartographer_sdf/verification/agreement.h"
 
 namespace cartographer_sdf {
 namespace {

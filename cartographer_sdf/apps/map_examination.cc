@@ -7,8 +7,8 @@
 
 #include "absl/strings/str_format.h"
 #include "cartographer_sdf/closing/torn_submaps.h"
-#include "cartographer_sdf/localization/confirmation.h"
 #include "cartographer_sdf/recognition/trajectory_links.h"
+#include "cartographer_sdf/verification/agreement.h"
 
 namespace cartographer_sdf {
 namespace {

@@ -8,8 +8,8 @@
 #include <iterator>
 
 #include "cartographer_sdf/geometry/evenly_spaced.h"
-#include "cartographer_sdf/localization/confirmation.h"
 #include "cartographer_sdf/place/trajectory_places.h"
+#include "cartographer_sdf/verification/agreement.h"
 
 namespace cartographer_sdf {
 namespace {

@@ -71,10 +71,7 @@ class Cells {
     if (members->size() <= kMaxNumClosuresPerCell) return;
     std::sort(members->begin(), members->end(),
               [&closures](const size_t a, const size_t b) {
-                if (closures[a].score != closures[b].score) {
-                  return closures[a].score > closures[b].score;
-                }
-                return IsBeforeByIds(closures[a], closures[b]);
+                return IsBeforeByScore(closures[a], closures[b]);
               });
     members->resize(kMaxNumClosuresPerCell);
   }

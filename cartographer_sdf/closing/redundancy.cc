@@ -95,10 +95,7 @@ std::vector<size_t> OrderByScore(const std::vector<PairPose>& pairs) {
   std::vector<size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::sort(order.begin(), order.end(), [&](const size_t a, const size_t b) {
-    if (pairs[a].score != pairs[b].score) {
-      return pairs[a].score > pairs[b].score;
-    }
-    return IsBeforeByIds(pairs[a], pairs[b]);
+    return IsBeforeByScore(pairs[a], pairs[b]);
   });
   return order;
 }

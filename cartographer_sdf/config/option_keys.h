@@ -135,12 +135,18 @@ inline void VisitOptions(OptionVisitor& visit, JudgementOptions& options) {
   visit("min_margin", options.min_margin);
 }
 
+inline void VisitOptions(OptionVisitor& visit, CrossingOptions& options) {
+  visit("max_wall_meters", options.max_wall_meters);
+  visit("max_crossed_fraction", options.max_crossed_fraction);
+}
+
 inline void VisitOptions(OptionVisitor& visit, VerificationOptions& options) {
   visit("ranking", options.ranking);
   visit("screening", options.screening);
   visit("registration", options.registration);
   visit("agreement", options.agreement);
   visit("judgement", options.judgement);
+  visit("crossing", options.crossing);
 }
 
 [[nodiscard]] inline std::vector<std::string> OptionNames(Method) {
@@ -342,8 +348,6 @@ inline void VisitOptions(OptionVisitor& visit, PlacementOptions& options) {
   visit("min_lead", options.min_lead);
   visit("max_contradiction_ratio", options.max_contradiction_ratio);
   visit("max_contradicting_fraction", options.max_contradicting_fraction);
-  visit("max_crossing_wall_meters", options.max_crossing_wall_meters);
-  visit("max_crossed_fraction", options.max_crossed_fraction);
   visit("same_distance_meters", options.same_distance_meters);
   visit("same_rotation", options.same_rotation);
   visit("min_observed_area", options.min_observed_area);

@@ -29,6 +29,12 @@ struct PairPose {
                                     : a.query < b.query;
 }
 
+// Order by score, the highest first; equal ones by ids.
+[[nodiscard]] inline bool IsBeforeByScore(const PairPose& a,
+                                          const PairPose& b) {
+  return a.score != b.score ? a.score > b.score : IsBeforeByIds(a, b);
+}
+
 }  // namespace cartographer_sdf
 
 #endif  // CARTOGRAPHER_SDF_GRID_PAIR_POSE_H_

@@ -14,17 +14,11 @@
 namespace cartographer_sdf {
 namespace {
 
-// Least overlap, as a fraction of the smaller observed area.
-constexpr double kMinOverlap = 0.4;
-
 // Largest standard deviation of a prediction [m]: an offset that registration
 // recovers with ease for pairs that may agree, less than half of that for pairs
 // that count against the placement.
 constexpr double kMaxSigma = 0.7;
 constexpr double kMaxContradictionSigma = 0.3;
-
-// Pairs that are searched for crossing walls, evenly spaced among all.
-constexpr size_t kMaxNumComparedPairs = 200;
 
 // Whether a pose differs from a predicted one by no more than answers may.
 bool IsNearPrediction(const LocalizationTask& task,
@@ -119,7 +113,7 @@ class Confirmer {
           {pair.reference->id, pair.query->id, pair.T_reference_query, 0.});
     }
     const std::vector<size_t> indices = EvenlySpacedIndices(
-        pairs.size(), std::min(pairs.size(), kMaxNumComparedPairs));
+        pairs.size(), std::min(pairs.size(), kMaxNumCrossingPairs));
     std::vector<std::optional<double>> lengths(indices.size());
     executor(indices.size(), [&](const size_t k) {
       const PairPose& pair = pairs[indices[k]];
@@ -128,7 +122,8 @@ class Confirmer {
     for (size_t k = 0; k < indices.size(); ++k) {
       if (!lengths[k]) continue;
       ++confirmation->num_compared;
-      if (*lengths[k] <= task_.placement.max_crossing_wall_meters) continue;
+      if (*lengths[k] <= task_.match.verification.crossing.max_wall_meters)
+        continue;
       const PairPose& pair = pairs[indices[k]];
       confirmation->crossing_walls.push_back(
           {pair.reference, pair.query, *lengths[k]});
@@ -264,12 +259,6 @@ Confirmation Confirm(Confirmer confirmer, const size_t max_num_pairs,
 
 }  // namespace
 
-bool OverlapsEnough(const SurfaceModel& reference, const SurfaceModel& query,
-                    const Rigid2& T_reference_query) {
-  return OverlapArea(reference, query, T_reference_query) >=
-         kMinOverlap * std::min(ObservedArea(reference), ObservedArea(query));
-}
-
 std::optional<Match> FindContradiction(const VerificationOptions& options,
                                        const double max_contradiction_ratio,
                                        const Place& reference,
@@ -293,12 +282,6 @@ std::optional<Match> FindContradiction(const VerificationOptions& options,
   match.verdict = Verdict::kContradicted;
   match.evidence = measured->evidence;
   return match;
-}
-
-bool IsCrossed(const PlacementOptions& options, const size_t num_crossing_walls,
-               const int num_compared) {
-  return static_cast<double>(num_crossing_walls) >
-         options.max_crossed_fraction * num_compared;
 }
 
 double ContradictingFraction(const std::vector<Match>& agreeing,

@@ -29,12 +29,6 @@ struct PlacedMap {
   const MapLayout* layout;
 };
 
-// Returns whether the two overlap enough at the pose to judge whether they
-// agree: by a fraction of the smaller observed area.
-[[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
-                                  const SurfaceModel& query,
-                                  const Rigid2& T_reference_query);
-
 // Returns the pair at the pose, registered if the walls allow, with the verdict
 // kContradicted; nullopt if no more than `max_contradiction_ratio` of the walls
 // (mean of both directions) lie in the other's free space.
@@ -57,14 +51,10 @@ struct Confirmation {
   // Walls of one lie in the free space of the other.
   std::vector<Match> contradicting;
   // Of so many pairs, votes or not, those that are crossed by a wall longer
-  // than PlacementOptions::max_crossing_wall_meters.
-  int num_compared = 0;
+  // than CrossingOptions::max_wall_meters.
+  size_t num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
 };
-
-// Whether walls cross too many of the pairs that were compared.
-[[nodiscard]] bool IsCrossed(const PlacementOptions& options,
-                             size_t num_crossing_walls, int num_compared);
 
 // Returns the fraction that contradict, of all places of the query with a match
 // that agrees or contradicts; zero if there are none.

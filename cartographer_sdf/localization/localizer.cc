@@ -335,8 +335,8 @@ class Localizer {
              absl::StrFormat("contradicted: alike at %s, but the surroundings "
                              "of %.0f %% of the places do not match",
                              where, 100. * fraction));
-    } else if (IsCrossed(options, result_.crossing_walls.size(),
-                         result_.num_compared)) {
+    } else if (IsCrossed(task_.match.verification.crossing,
+                         result_.crossing_walls.size(), result_.num_compared)) {
       Refuse(LocalizationVerdict::kContradicted, DescribeCrossing(where));
     } else if (rival != nullptr &&
                (best.score - rival->score < options.min_lead ||

@@ -83,7 +83,7 @@ struct Localization {
   int num_contradicting = 0;
   std::vector<Match> contradictions;
   // Among so many pairs that it makes overlap; 0 if it was not confirmed.
-  int num_compared = 0;
+  size_t num_compared = 0;
   std::vector<CrossingWall> crossing_walls;
   // What changed since the map was made. Filled in by LocalizeIn
   // (apps/session.h), if localised.

@@ -229,13 +229,6 @@ std::string Validate(const PlacementOptions& options) {
         options.max_contradicting_fraction <= 1.)) {
     return "max_contradicting_fraction must lie between 0 and 1";
   }
-  if (!(options.max_crossing_wall_meters > 0.)) {
-    return "max_crossing_wall_meters must be positive";
-  }
-  if (!(options.max_crossed_fraction >= 0. &&
-        options.max_crossed_fraction <= 1.)) {
-    return "max_crossed_fraction must lie between 0 and 1";
-  }
   if (!(options.same_distance_meters > 0. && options.same_rotation > 0.)) {
     return "same_distance_meters and same_rotation must be positive";
   }

@@ -50,12 +50,6 @@ struct PlacementOptions {
   // Largest fraction of the query's places in the observed area of the map that
   // may contradict the placement.
   double max_contradicting_fraction = 0.3;
-  // Two submaps cannot show the same place if a longer straight wall of one
-  // stands across the free space of the other [m]: longer than furniture.
-  double max_crossing_wall_meters = 3.;
-  // Largest fraction of the pairs of submaps that the placement makes overlap
-  // that may be crossed by such a wall: local SLAM tears some submaps.
-  double max_crossed_fraction = 0.05;
   // Poses of a place that differ by less than this count as the same [m],
   // [rad].
   double same_distance_meters = 1.;

@@ -71,14 +71,15 @@ MeasuredPlacement Measure(const LocalizationTask& task,
 }
 
 // Whether it fits what both maps show, as a placement must.
-bool IsPossible(const PlacementOptions& options,
+bool IsPossible(const LocalizationTask& task,
                 const Confirmation& confirmation) {
   return !confirmation.agreeing.empty() &&
-         !IsCrossed(options, confirmation.crossing_walls.size(),
+         !IsCrossed(task.match.verification.crossing,
+                    confirmation.crossing_walls.size(),
                     confirmation.num_compared) &&
          ContradictingFraction(confirmation.agreeing,
                                confirmation.contradicting) <=
-             options.max_contradicting_fraction;
+             task.placement.max_contradicting_fraction;
 }
 
 // Whether it does as well as the other.
@@ -106,7 +107,7 @@ Contest FindRivalPlacements(const LocalizationTask& task,
     }
     MeasuredPlacement rival =
         Measure(task, std::move(of_rival), max_num_pairs, executor);
-    if (IsPossible(task.placement, rival.confirmation)) {
+    if (IsPossible(task, rival.confirmation)) {
       contest.rivals.push_back(std::move(rival));
     }
   }

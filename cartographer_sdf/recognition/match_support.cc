@@ -122,110 +122,98 @@ Vote VoteFor(const MatchSupportOptions& options, const Prediction& prediction,
   return opposes ? Vote::kOpposes : Vote::kNeither;
 }
 
-// Finds matches that are certain together.
-class GroupFinder {
- public:
-  GroupFinder(const MatchSupportOptions& options, const NeighbourhoodMaps& maps,
-              const std::vector<Match>& matches)
-      : options_(options), maps_(maps), matches_(matches) {
-    for (size_t k = 0; k < matches.size(); ++k) {
-      if (MayJoin(matches[k])) indices_.emplace(IdsOf(matches[k]), k);
-    }
-  }
-
-  // Returns their indices.
-  [[nodiscard]] std::vector<size_t> Find() const {
-    std::vector<size_t> certain;
-    std::set<size_t> seen;
-    for (const auto& entry : indices_) {
-      if (seen.count(entry.second) > 0) continue;
-      const std::vector<size_t> group = GroupOf(entry.second, &seen);
-      if (IsCertainTogether(group)) {
-        certain.insert(certain.end(), group.begin(), group.end());
-      }
-    }
-    return certain;
-  }
-
- private:
-  [[nodiscard]] static IdPair IdsOf(const Match& match) {
-    return {match.pair.reference, match.pair.query};
-  }
-
-  // Whether it is likely, and suits no other pose and no other place.
-  [[nodiscard]] bool MayJoin(const Match& match) const {
-    return (match.verdict == Verdict::kAccepted ||
-            match.verdict == Verdict::kUnlikely) &&
-           match.pair.score >= options_.min_supported_score &&
-           !match.has_rival && match.margin >= kMaxMargin;
-  }
-
-  // The match, and all that it supports and those support; adds them to `seen`.
-  [[nodiscard]] std::vector<size_t> GroupOf(
-      const size_t first, std::set<size_t>* const seen) const {
-    std::vector<size_t> group = {first};
-    seen->insert(first);
-    for (size_t next = 0; next < group.size(); ++next) {
-      VisitMatchesAround(options_, maps_, indices_, matches_[group[next]].pair,
-                         [&](const size_t k, const Prediction& prediction) {
-                           if (VoteFor(options_, prediction,
-                                       matches_[k].pair.T_reference_query) ==
-                                   Vote::kSupports &&
-                               seen->insert(k).second) {
-                             group.push_back(k);
-                           }
-                         });
-    }
-    return group;
-  }
-
-  // Whether one of the group is accepted, and its best that share no scans are
-  // worth more than a certain one. One with a certain match needs no other:
-  // that supports it.
-  [[nodiscard]] bool IsCertainTogether(std::vector<size_t> group) const {
-    bool has_accepted = false;
-    for (const size_t k : group) {
-      if (IsCertain(options_, matches_[k])) return false;
-      has_accepted |= matches_[k].verdict == Verdict::kAccepted;
-    }
-    if (!has_accepted) return false;
-    std::sort(
-        group.begin(), group.end(), [this](const size_t a, const size_t b) {
-          const PairPose& first = matches_[a].pair;
-          const PairPose& second = matches_[b].pair;
-          return first.score != second.score ? first.score > second.score
-                                             : IsBeforeByIds(first, second);
+// The match, and all that it supports and those support, among those in
+// `indices`; adds them to `seen`.
+std::vector<size_t> GroupOf(const MatchSupportOptions& options,
+                            const NeighbourhoodMaps& maps,
+                            const std::vector<Match>& matches,
+                            const MatchIndices& indices, const size_t first,
+                            std::set<size_t>* const seen) {
+  std::vector<size_t> group = {first};
+  seen->insert(first);
+  for (size_t next = 0; next < group.size(); ++next) {
+    VisitMatchesAround(
+        options, maps, indices, matches[group[next]].pair,
+        [&](const size_t k, const Prediction& prediction) {
+          if (VoteFor(options, prediction, matches[k].pair.T_reference_query) ==
+                  Vote::kSupports &&
+              seen->insert(k).second) {
+            group.push_back(k);
+          }
         });
-    std::vector<const PairPose*> counted;
-    double score = 0.;
-    for (const size_t k : group) {
-      const PairPose& pair = matches_[k].pair;
-      const bool is_counted = std::any_of(
-          counted.begin(), counted.end(),
-          [&](const PairPose* other) { return ShareScans(pair, *other); });
-      if (is_counted) continue;
-      counted.push_back(&pair);
-      score += pair.score;
-      if (score >= options_.min_unsupported_score + kGroupSurplus) return true;
+  }
+  return group;
+}
+
+// Whether it is likely, and suits no other pose and no other place.
+bool IsLikelyWithoutRival(const MatchSupportOptions& options,
+                          const Match& match) {
+  return (match.verdict == Verdict::kAccepted ||
+          match.verdict == Verdict::kUnlikely) &&
+         match.pair.score >= options.min_supported_score && !match.has_rival &&
+         match.margin >= kMaxMargin;
+}
+
+// Whether the two pairs of submaps have scans in common.
+bool PairsShareScans(const NeighbourhoodMaps& maps, const PairPose& a,
+                     const PairPose& b) {
+  const auto share = [](const SubmapId& one, const SubmapId& other) {
+    return one.trajectory == other.trajectory &&
+           std::abs(one.index - other.index) < kMinIndexDistance;
+  };
+  return share(a.reference, b.reference) || share(a.query, b.query) ||
+         (maps.min_index_gap &&
+          (share(a.reference, b.query) || share(a.query, b.reference)));
+}
+
+// Whether one of the group is accepted, and its best that share no scans are
+// worth more than a certain one. One with a certain match needs no other: that
+// supports it.
+bool IsCertainTogether(const MatchSupportOptions& options,
+                       const NeighbourhoodMaps& maps,
+                       const std::vector<Match>& matches,
+                       const std::vector<size_t>& group) {
+  bool has_accepted = false;
+  std::vector<const PairPose*> pairs;
+  for (const size_t k : group) {
+    if (IsCertain(options, matches[k])) return false;
+    has_accepted |= matches[k].verdict == Verdict::kAccepted;
+    pairs.push_back(&matches[k].pair);
+  }
+  if (!has_accepted) return false;
+  std::sort(pairs.begin(), pairs.end(),
+            [](const PairPose* const a, const PairPose* const b) {
+              return IsBeforeByScore(*a, *b);
+            });
+  std::vector<const PairPose*> counted;
+  double score = 0.;
+  for (const PairPose* const pair : pairs) {
+    const bool is_counted = std::any_of(
+        counted.begin(), counted.end(), [&](const PairPose* const other) {
+          return PairsShareScans(maps, *pair, *other);
+        });
+    if (is_counted) continue;
+    counted.push_back(pair);
+    score += pair->score;
+  }
+  return score >= options.min_unsupported_score + kGroupSurplus;
+}
+
+// Returns the matches that are certain together.
+std::vector<size_t> FindCertainTogether(const MatchSupportOptions& options,
+                                        const NeighbourhoodMaps& maps,
+                                        const std::vector<Match>& matches) {
+  std::vector<size_t> certain;
+  for (const std::vector<size_t>& group : FindSupportingGroups(
+           options, maps, matches, [&options](const Match& match) {
+             return IsLikelyWithoutRival(options, match);
+           })) {
+    if (IsCertainTogether(options, maps, matches, group)) {
+      certain.insert(certain.end(), group.begin(), group.end());
     }
-    return false;
   }
-
-  [[nodiscard]] bool ShareScans(const PairPose& a, const PairPose& b) const {
-    const auto share = [](const SubmapId& one, const SubmapId& other) {
-      return one.trajectory == other.trajectory &&
-             std::abs(one.index - other.index) < kMinIndexDistance;
-    };
-    return share(a.reference, b.reference) || share(a.query, b.query) ||
-           (maps_.min_index_gap &&
-            (share(a.reference, b.query) || share(a.query, b.reference)));
-  }
-
-  const MatchSupportOptions& options_;
-  const NeighbourhoodMaps& maps_;
-  const std::vector<Match>& matches_;
-  MatchIndices indices_;
-};
+  return certain;
+}
 
 }  // namespace
 
@@ -251,7 +239,7 @@ void JudgeBySupport(const MatchSupportOptions& options,
                     std::vector<Match>* const matches) {
   CHECK_EQ(Validate(options), "");
   MatchIndices indices;
-  std::vector<size_t> supporting = GroupFinder(options, maps, *matches).Find();
+  std::vector<size_t> supporting = FindCertainTogether(options, maps, *matches);
   std::set<size_t> is_supporting(supporting.begin(), supporting.end());
   for (size_t k = 0; k < matches->size(); ++k) {
     Match& match = (*matches)[k];
@@ -282,6 +270,26 @@ void JudgeBySupport(const MatchSupportOptions& options,
   for (Match& match : *matches) {
     match.verdict = JudgeWithSupport(options, match);
   }
+}
+
+std::vector<std::vector<size_t>> FindSupportingGroups(
+    const MatchSupportOptions& options, const NeighbourhoodMaps& maps,
+    const std::vector<Match>& matches,
+    const std::function<bool(const Match&)>& may_join) {
+  MatchIndices indices;
+  for (size_t k = 0; k < matches.size(); ++k) {
+    if (!may_join(matches[k])) continue;
+    indices.emplace(IdPair(matches[k].pair.reference, matches[k].pair.query),
+                    k);
+  }
+  std::vector<std::vector<size_t>> groups;
+  std::set<size_t> seen;
+  for (const auto& entry : indices) {
+    if (seen.count(entry.second) > 0) continue;
+    groups.push_back(
+        GroupOf(options, maps, matches, indices, entry.second, &seen));
+  }
+  return groups;
 }
 
 }  // namespace cartographer_sdf

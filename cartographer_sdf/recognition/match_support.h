@@ -25,6 +25,7 @@
 #ifndef CARTOGRAPHER_SDF_RECOGNITION_MATCH_SUPPORT_H_
 #define CARTOGRAPHER_SDF_RECOGNITION_MATCH_SUPPORT_H_
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,13 @@ struct MatchSupportOptions {
 // Linear in their number.
 void JudgeBySupport(const MatchSupportOptions& options,
                     const NeighbourhoodMaps& maps, std::vector<Match>* matches);
+
+// Returns the matches, by their indices, of which `may_join` is true, in groups
+// that support each other: of two groups none supports one of the other.
+[[nodiscard]] std::vector<std::vector<size_t>> FindSupportingGroups(
+    const MatchSupportOptions& options, const NeighbourhoodMaps& maps,
+    const std::vector<Match>& matches,
+    const std::function<bool(const Match&)>& may_join);
 
 }  // namespace cartographer_sdf
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "cartographer_sdf/recognition/crossed_groups.h"
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
 #include "glog/logging.h"
 
@@ -191,8 +192,11 @@ std::vector<Match> VerifyIfAsked(const RecognitionOptions& options,
   }
   maps.reference_links = &reference_links;
   maps.query_links = query_links ? &*query_links : &reference_links;
-  return VerifyTogether(options, maps, std::move(matches), executor,
-                        on_progress);
+  matches =
+      VerifyTogether(options, maps, std::move(matches), executor, on_progress);
+  RefuseCrossedGroups(options.match.verification, options.neighbourhood,
+                      options.support, maps, executor, &matches);
+  return matches;
 }
 
 }  // namespace

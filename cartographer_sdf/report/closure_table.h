@@ -27,6 +27,8 @@ constexpr size_t kMaxTableRows = 2000;
 constexpr char kRecognitionPath[] = "loop_closing.recognition";
 constexpr char kJudgementPath[] =
     "loop_closing.recognition.match.verification.judgement";
+constexpr char kCrossingPath[] =
+    "loop_closing.recognition.match.verification.crossing";
 constexpr char kClosingPath[] = "loop_closing.closing";
 
 // The least score of a match, and the option that holds it.

@@ -115,7 +115,7 @@ std::vector<RowStatus> VoteStatuses() {
       {"crossed", "crossed by a wall", Tone::kBad,
        "The best placement puts a long wall of one across free space of the "
        "other.",
-       path + "max_crossing_wall_meters"},
+       absl::StrCat(kCrossingPath, ".max_wall_meters")},
       {"contradicting", "contradicts", Tone::kBad,
        "The best placement puts walls of one in free space of the other.",
        path + "max_contradiction_ratio"},
@@ -148,8 +148,7 @@ std::vector<InspectedRow> CrossedRows(const Session& map, const Session& query,
   return rows;
 }
 
-InspectedTable VoteTable(const LoopClosingOptions& stages,
-                         const PlacementOptions& options, const Session& map,
+InspectedTable VoteTable(const LoopClosingOptions& stages, const Session& map,
                          const Session& query, const Localization& result) {
   InspectedTable table{
       "matches", "Matches", "",
@@ -160,8 +159,9 @@ InspectedTable VoteTable(const LoopClosingOptions& stages,
   table.measures.push_back(
       {"crossing_wall", "crossing wall", "m", 1,
        "The longest straight wall of one across free space of the other.",
-       false, Measure::Bound::kAtMost, options.max_crossing_wall_meters,
-       absl::StrCat(kPlacementPath, ".max_crossing_wall_meters")});
+       false, Measure::Bound::kAtMost,
+       stages.recognition.match.verification.crossing.max_wall_meters,
+       absl::StrCat(kCrossingPath, ".max_wall_meters")});
   for (const Match& match : result.contradictions) {
     table.rows.push_back(MatchRowOf(match, "contradicting", ""));
   }
@@ -317,7 +317,7 @@ absl::Status WriteRelocalizationReport(const ReportRequest& request,
                     &inspection);
   inspection.tables = {
       PlacementTable(options.placement, query.map.state, result),
-      VoteTable(stages, options.placement, map, query, result)};
+      VoteTable(stages, map, query, result)};
   RenumberRows(placed.parts(), &inspection.tables.back());
   inspection.stage_seconds = result.stage_seconds;
   const absl::Status status = DrawInspection(

@@ -19,6 +19,10 @@ constexpr size_t kChunkSize = 64;
 constexpr double kTileSize = 2.;
 constexpr double kFullTileWallLength = 0.4;
 
+// Least overlap by which two submaps are judged, as a fraction of the smaller
+// observed area.
+constexpr double kMinOverlap = 0.4;
+
 // Calls visit(point, cell) for the first points that fall into the model.
 template <typename Visitor>
 void VisitCells(const SurfaceModel& model,
@@ -257,6 +261,12 @@ double OverlapArea(const SurfaceModel& reference, const SurfaceModel& query,
                   return true;
                 });
   return AreaOfPoints(query, count, num_points);
+}
+
+bool OverlapsEnough(const SurfaceModel& reference, const SurfaceModel& query,
+                    const Rigid2& T_reference_query) {
+  return OverlapArea(reference, query, T_reference_query) >=
+         kMinOverlap * std::min(ObservedArea(reference), ObservedArea(query));
 }
 
 bool OverlapsBy(const double min_area, const SurfaceModel& reference,

@@ -88,7 +88,14 @@ constexpr int kMaxNumOverlapPoints = 1000;
                               const Rigid2& T_reference_query,
                               int max_num_points = kMaxNumOverlapPoints);
 
-// Its centroid in the query frame [m]; none where nothing is observed by both.
+// Whether the two overlap enough at the pose to judge whether they agree: by
+// two fifths of the smaller observed area.
+[[nodiscard]] bool OverlapsEnough(const SurfaceModel& reference,
+                                  const SurfaceModel& query,
+                                  const Rigid2& T_reference_query);
+
+// The centroid of what both observed in the query frame [m]; none where nothing
+// is observed by both.
 [[nodiscard]] std::optional<Eigen::Vector2d> OverlapCentroid(
     const SurfaceModel& reference, const SurfaceModel& query,
     const Rigid2& T_reference_query);

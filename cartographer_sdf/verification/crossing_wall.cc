@@ -87,12 +87,29 @@ double LongestStretchInFreeSpace(const SurfaceModel& model,
 
 }  // namespace
 
+std::string Validate(const CrossingOptions& options) {
+  if (!(options.max_wall_meters > 0.)) {
+    return "max_wall_meters must be positive";
+  }
+  if (!(options.max_crossed_fraction >= 0. &&
+        options.max_crossed_fraction <= 1.)) {
+    return "max_crossed_fraction must lie between 0 and 1";
+  }
+  return "";
+}
+
 double LongestCrossingWall(const SurfaceModel& reference,
                            const SurfaceModel& query,
                            const Rigid2& T_reference_query) {
   return std::max(
       LongestStretchInFreeSpace(reference, query, T_reference_query),
       LongestStretchInFreeSpace(query, reference, T_reference_query.Inverse()));
+}
+
+bool IsCrossed(const CrossingOptions& options, const size_t num_crossed,
+               const size_t num_compared) {
+  return static_cast<double>(num_crossed) >
+         options.max_crossed_fraction * static_cast<double>(num_compared);
 }
 
 }  // namespace cartographer_sdf

@@ -258,7 +258,7 @@ std::string Validate(const VerificationOptions& options) {
   for (const std::string& error :
        {Validate(options.ranking), Validate(options.screening),
         Validate(options.registration), Validate(options.agreement),
-        Validate(options.judgement)}) {
+        Validate(options.judgement), Validate(options.crossing)}) {
     if (!error.empty()) return error;
   }
   return "";

@@ -17,6 +17,7 @@
 #include "cartographer_sdf/geometry/distinct_poses.h"
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/place/surface_model.h"
+#include "cartographer_sdf/verification/crossing_wall.h"
 #include "cartographer_sdf/verification/evidence.h"
 #include "cartographer_sdf/verification/hypothesis_ranking.h"
 #include "cartographer_sdf/verification/judgement.h"
@@ -45,6 +46,8 @@ struct VerificationOptions {
   RegistrationOptions registration;
   AgreementOptions agreement;
   JudgementOptions judgement;
+  // Of the pairs of two trajectories or maps that matches put together.
+  CrossingOptions crossing;
 };
 [[nodiscard]] std::string Validate(const VerificationOptions& options);
 

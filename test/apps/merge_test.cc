@@ -57,14 +57,14 @@ class MergingTest : public ::testing::Test {
   static MergingResult MergeCredulously(const std::vector<std::string>& paths) {
     LocalizationOptions credulous;
     credulous.placement.max_contradicting_fraction = 1.;
-    credulous.placement.max_crossed_fraction = 1.;
     credulous.placement.min_score = 1.;
+    LoopClosingOptions stages;
+    stages.recognition.match.verification.crossing.max_crossed_fraction = 1.;
     FoldCheckOptions strict;
     strict.max_contradiction_ratio = 0.05;
-    absl::StatusOr<MergingResult> result =
-        MergeSessions(strict, SessionLinkOptions(), credulous,
-                      ScanPlaceOptions(), LoopClosingOptions(),
-                      {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
+    absl::StatusOr<MergingResult> result = MergeSessions(
+        strict, SessionLinkOptions(), credulous, ScanPlaceOptions(), stages,
+        {paths.begin(), paths.end()}, {}, ThreadExecutor(2));
     CHECK(result.ok()) << result.status();
     return *std::move(result);
   }

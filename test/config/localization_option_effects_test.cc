@@ -19,7 +19,6 @@
 #include "cartographer_sdf/localization/scan_places.h"
 #include "cartographer_sdf/localization/scan_session.h"
 #include "gtest/gtest.h"
-#include "test/testing/divided_hall.h"
 #include "test/testing/drawn_map.h"
 #include "test/testing/option_effects.h"
 #include "test/testing/visited_rooms.h"
@@ -110,7 +109,6 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
   const std::vector<Match> from_both_rooms = {
       rooms_.MakeMatch(VisitedRooms::kWestFirst, VisitedRooms::kWestAgain, 9.),
       rooms_.MakeMatch(VisitedRooms::kEastFirst, VisitedRooms::kWestAgain, 5.)};
-  const testing::DividedHall halls(4.);
   const std::vector<testing::Scenario<LocalizationOptions>> scenarios = {
       {"",
        [&](const LocalizationOptions& options) {
@@ -123,11 +121,6 @@ TEST_F(LocalizationOptionEffectsTest, NoneOfLocalizationIsWithout) {
       {"placement.max_contradicting_fraction",
        [&](const LocalizationOptions& options) {
          return Locate(options, MatchesOfOne(), kMisplaced);
-       }},
-      {"placement.max_cross",
-       [&](const LocalizationOptions& options) {
-         return Text(
-             testing::DividedHall::Locate(options, halls, MakeExecutor(1)));
        }},
       {"placement.further_match_weight",
        [&](const LocalizationOptions& options) {

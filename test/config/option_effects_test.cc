@@ -18,11 +18,13 @@
 #include "cartographer_sdf/execution/parallel_for.h"
 #include "cartographer_sdf/matching/place_index.h"
 #include "cartographer_sdf/place/field_memory.h"
+#include "cartographer_sdf/recognition/crossed_groups.h"
 #include "cartographer_sdf/recognition/neighbourhood_verification.h"
 #include "cartographer_sdf/recognition/recognize.h"
 #include "gtest/gtest.h"
 #include "test/testing/building.h"
 #include "test/testing/corridor_map.h"
+#include "test/testing/divided_hall.h"
 #include "test/testing/two_visits.h"
 
 namespace cartographer_sdf::option_effects_test {
@@ -250,6 +252,7 @@ TEST(OptionEffectsTest, OfPlaces) {
 
 TEST(OptionEffectsTest, OfRecognition) {
   const Drive drive;
+  const testing::DividedHall halls(4.);
   const std::map<SubmapId, Place> places = drive.Describe(PlaceOptions());
   // One whose matches only its neighbours propose.
   std::map<SubmapId, Place> featureless = places;
@@ -286,6 +289,14 @@ TEST(OptionEffectsTest, OfRecognition) {
          KeepBadPoses(options);
          options->match.verification.screening.min_score = -1e6;
        })},
+      {"match.verification.crossing.",
+       [&halls](const RecognitionOptions& options) {
+         std::vector<Match> matches = {testing::DividedHall::MakeMatch(9.)};
+         RefuseCrossedGroups(options.match.verification, options.neighbourhood,
+                             options.support, halls.Maps(), MakeExecutor(1),
+                             &matches);
+         return std::string(VerdictName(matches[0].verdict));
+       }},
       {"use_retrieval", blind},
       {"match.correspondence.max_ratio", with([](RecognitionOptions* options) {
          options->match.correspondence.use_ratio_test = true;

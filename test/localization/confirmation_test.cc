@@ -124,18 +124,6 @@ class BareRoomTest : public ::testing::Test {
   Place place_;
 };
 
-TEST_F(BareRoomTest, TwoFifthsOfTheAreaAreEnough) {
-  // Shifted by 4.8 m, 3.2 m of 8 m are common. A cell of 5 cm is 0.006.
-  EXPECT_TRUE(
-      OverlapsEnough(place_.surface, place_.surface, Rigid2(4.7, 0., 0.)));
-  EXPECT_FALSE(
-      OverlapsEnough(place_.surface, place_.surface, Rigid2(4.9, 0., 0.)));
-  EXPECT_TRUE(
-      OverlapsEnough(place_.surface, place_.surface, Rigid2(0., 2.9, 0.)));
-  EXPECT_FALSE(
-      OverlapsEnough(place_.surface, place_.surface, Rigid2(0., 3.1, 0.)));
-}
-
 TEST_F(BareRoomTest, ContradictsItselfWhereItIsShifted) {
   const VerificationOptions options;
   EXPECT_FALSE(FindContradiction(options, 0.01, place_, place_, Rigid2()));

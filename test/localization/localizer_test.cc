@@ -165,9 +165,27 @@ TEST_F(LocalizeTest, SaysWhenTooLittleWasSeen) {
   EXPECT_THAT(found.reason, HasSubstr("10000 are needed"));
 }
 
+MapLayout LayoutOf(const testing::DividedHall::Map& map) {
+  PoseGraph graph;
+  for (const auto& entry : map.places) graph.submap_poses[entry.first] = {};
+  return MakeMapLayout(graph, map.odometry, map.places);
+}
+
+// Matches the two halls, whatever they look like.
+Localization Locate(const testing::DividedHall& halls) {
+  const MapLayout hall = LayoutOf(halls.hall);
+  const MapLayout divided = LayoutOf(halls.divided);
+  return Localize(
+      LocalizationOptions(), ConsistencyOptions(), MatchOptions(),
+      {&halls.hall.places, &hall}, {&halls.divided.places, &divided},
+      [](const std::map<SubmapId, Place>&, const ProgressCallback&) {
+        return std::vector<Match>{testing::DividedHall::MakeMatch(9.)};
+      },
+      MakeExecutor(1));
+}
+
 TEST(CrossingWallsTest, ALongOneRefutesWhatIsAlike) {
-  const Localization found = testing::DividedHall::Locate(
-      LocalizationOptions(), testing::DividedHall(6.), MakeExecutor(1));
+  const Localization found = Locate(testing::DividedHall(6.));
   EXPECT_EQ(found.verdict, LocalizationVerdict::kContradicted);
   EXPECT_THAT(found.reason,
               HasSubstr("stand across the free space of the other in 1 of 2 "
@@ -180,8 +198,7 @@ TEST(CrossingWallsTest, ALongOneRefutesWhatIsAlike) {
 }
 
 TEST(CrossingWallsTest, AShortOneMayBeFurniture) {
-  const Localization found = testing::DividedHall::Locate(
-      LocalizationOptions(), testing::DividedHall(2.), MakeExecutor(1));
+  const Localization found = Locate(testing::DividedHall(2.));
   EXPECT_EQ(found.verdict, LocalizationVerdict::kLocalized) << found.reason;
   EXPECT_EQ(found.num_compared, 2);
   EXPECT_THAT(found.crossing_walls, SizeIs(0));

@@ -216,12 +216,6 @@ TEST(PlacementOptionsTest, AreValidated) {
   options.max_contradicting_fraction = 1.5;
   EXPECT_NE(Validate(options), "");
   options = PlacementOptions();
-  options.max_crossed_fraction = 1.5;
-  EXPECT_NE(Validate(options), "");
-  options = PlacementOptions();
-  options.max_crossing_wall_meters = 0.;
-  EXPECT_NE(Validate(options), "");
-  options = PlacementOptions();
   options.further_match_weight = 1.5;
   EXPECT_NE(Validate(options), "");
 }

@@ -22,6 +22,7 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::UnorderedElementsAre;
 
 // Found, and too unlikely to be accepted by itself.
 Match Unlikely(const int reference, const int query, const Rigid2& pose,
@@ -359,6 +360,23 @@ TEST(MatchSupportOptionsTest, ValidatesOptions) {
               HasSubstr("max_distance_meters"));
   EXPECT_THAT(error([&](auto* o) { o->max_rotation = -1.; }),
               HasSubstr("max_rotation"));
+}
+
+TEST(FindSupportingGroupsTest, WhatSupportsEachOtherIsOne) {
+  const CorridorMap corridor;
+  const std::vector<Match> matches = {
+      AcceptedMatch(0, 10, kSame, 5.), AcceptedMatch(1, 11, kSame, 5.),
+      Unlikely(2, 12, kSame, 3.), AcceptedMatch(3, 13, kSame, 5.),
+      // One room further, and far away.
+      AcceptedMatch(2, 12, Rigid2(10., 0., 0.), 5.),
+      AcceptedMatch(8, 18, kSame, 5.)};
+  const auto is_accepted = [](const Match& match) {
+    return match.verdict == Verdict::kAccepted;
+  };
+  EXPECT_THAT(FindSupportingGroups(MatchSupportOptions(), corridor.Between(),
+                                   matches, is_accepted),
+              ElementsAre(UnorderedElementsAre(0, 1, 3), ElementsAre(4),
+                          ElementsAre(5)));
 }
 
 }  // namespace

@@ -165,5 +165,34 @@ TEST(RecognitionOptionsTest, AreValidated) {
   EXPECT_NE(Validate(options), "");
 }
 
+TEST(RecognizeTest, AWallAcrossTheNextRoomRefutesAMatchBetweenMaps) {
+  const testing::TwoVisits visits;
+  const TrajectoryPlaces map = visits.Places();
+  // In the second map, a wall divides the east room. Furniture breaks it into
+  // pieces.
+  testing::Building divided = testing::TwoRooms();
+  divided.push_back(testing::Wall({10.4, -0.2}, {15.6, 2.2}));
+  std::map<SubmapId, Place> places = *map.places;
+  const SubmapId east = testing::TwoVisits::kEastAgain;
+  places.at(east) =
+      *DescribePlace(PlaceOptions(), east,
+                     testing::SeeFrom(divided, visits.T_world_submap(east),
+                                      testing::EastRoomViewpoints()));
+  RecognitionOptions options;
+  // Whatever else the divided room says.
+  options.neighbourhood.weights.bias = 10.;
+  const auto num_accepted = [&](const double max_wall_meters) {
+    options.match.verification.crossing.max_wall_meters = max_wall_meters;
+    UnheardClock clock;
+    const std::vector<Match> matches = RecognizeBetween(
+        options, map, {&places, map.odometry}, MakeExecutor(2), &clock.clock);
+    return std::count_if(matches.begin(), matches.end(), [](const Match& m) {
+      return m.verdict == Verdict::kAccepted;
+    });
+  };
+  EXPECT_GT(num_accepted(100.), 0);
+  EXPECT_EQ(num_accepted(1.), 0);
+}
+
 }  // namespace
 }  // namespace cartographer_sdf::recognize_test

@@ -9,17 +9,19 @@
 #define TEST_TESTING_DIVIDED_HALL_H_
 
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "cartographer_sdf/localization/localizer.h"
 #include "cartographer_sdf/place/place.h"
+#include "cartographer_sdf/recognition/match.h"
+#include "cartographer_sdf/recognition/neighbourhood.h"
 #include "test/testing/building.h"
 
 namespace cartographer_sdf::testing {
 
 struct DividedHall {
-  static constexpr SubmapId kHall{0, 0}, kDivided{1, 0}, kBefore{1, 1};
+  static constexpr SubmapId kHall{0, 0}, kDivided{1, 0}, kBefore{1, 2};
 
   explicit DividedHall(const double wall_length) {
     const Building bare = BareRoom(14., 10.);
@@ -39,31 +41,21 @@ struct DividedHall {
     return match;
   }
 
-  // Matches the two halls, whatever they look like.
-  [[nodiscard]] static Localization Locate(const LocalizationOptions& options,
-                                           const DividedHall& halls,
-                                           const Executor& executor) {
-    return Localize(
-        options, ConsistencyOptions(), MatchOptions(),
-        {&halls.hall.places, &halls.hall.layout},
-        {&halls.divided.places, &halls.divided.layout},
-        [](const std::map<SubmapId, Place>&, const ProgressCallback&) {
-          return std::vector<Match>{MakeMatch(9.)};
-        },
-        executor);
+  [[nodiscard]] NeighbourhoodMaps Maps() const {
+    return {{&hall.places, &hall.odometry},
+            {&divided.places, &divided.odometry},
+            std::nullopt};
   }
 
   struct Map {
     std::map<SubmapId, Place> places;
-    MapLayout layout{{}, {}, {}, DrivenDistances({}, {})};
+    std::map<SubmapId, OdometryPose> odometry;
   };
   Map hall, divided;
 
  private:
   static void Add(Map* const map, const std::vector<SubmapId>& ids,
                   const std::vector<Building>& buildings) {
-    PoseGraph graph;
-    std::map<SubmapId, OdometryPose> odometry;
     for (size_t k = 0; k < ids.size(); ++k) {
       map->places.emplace(ids[k], *DescribePlace(PlaceOptions(), ids[k],
                                                  SeeFrom(buildings[k], {},
@@ -73,10 +65,8 @@ struct DividedHall {
                                                           {4., 3.},
                                                           {0., 3.},
                                                           {0., -3.}})));
-      graph.submap_poses[ids[k]] = Rigid2();
-      odometry[ids[k]].distance_driven = static_cast<double>(k);
+      map->odometry[ids[k]].distance_driven = static_cast<double>(k);
     }
-    map->layout = MakeMapLayout(graph, odometry, map->places);
   }
 };
 

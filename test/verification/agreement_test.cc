@@ -42,6 +42,17 @@ DirectedAgreement Measure(const std::vector<SurfacePoint>& points) {
                           points, Rigid2());
 }
 
+TEST(OverlapsEnoughTest, TwoFifthsOfTheAreaAreEnough) {
+  // A room of 8 m x 5 m, seen from its middle.
+  const SurfaceModel room =
+      testing::SurfaceSeenFrom(testing::BareRoom(8., 5.), {}, {{0., 0.}});
+  // Shifted by 4.8 m, 3.2 m of 8 m are common. A cell of 5 cm is 0.006.
+  EXPECT_TRUE(OverlapsEnough(room, room, Rigid2(4.7, 0., 0.)));
+  EXPECT_FALSE(OverlapsEnough(room, room, Rigid2(4.9, 0., 0.)));
+  EXPECT_TRUE(OverlapsEnough(room, room, Rigid2(0., 2.9, 0.)));
+  EXPECT_FALSE(OverlapsEnough(room, room, Rigid2(0., 3.1, 0.)));
+}
+
 TEST(AgreementTest, PointsOnAWallAreHits) {
   // At -0.5, 0.5 and 3.5 cells from the wall's edge; the limit is at 3.75.
   const DirectedAgreement agreement =

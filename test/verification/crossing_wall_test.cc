@@ -73,5 +73,24 @@ TEST(LongestCrossingWallTest, WhatTheOtherHasNotSeenDoesNotCount) {
   EXPECT_EQ(Longest({}, Rigid2(30., 0., 0.)), 0.);
 }
 
+TEST(CrossingOptionsTest, AreValidated) {
+  EXPECT_EQ(Validate(CrossingOptions()), "");
+  CrossingOptions options;
+  options.max_crossed_fraction = 1.5;
+  EXPECT_NE(Validate(options), "");
+  options = CrossingOptions();
+  options.max_wall_meters = 0.;
+  EXPECT_NE(Validate(options), "");
+}
+
+TEST(IsCrossedTest, WhereMoreThanTheFractionIs) {
+  CrossingOptions options;
+  options.max_crossed_fraction = 0.1;
+  EXPECT_FALSE(IsCrossed(options, 1, 10));
+  EXPECT_TRUE(IsCrossed(options, 2, 10));
+  // Nothing to compare refutes nothing.
+  EXPECT_FALSE(IsCrossed(options, 0, 0));
+}
+
 }  // namespace
 }  // namespace cartographer_sdf::crossing_wall_test
