@@ -91,8 +91,7 @@ void Searcher::BeginSearch(const int trajectory_id,
       (trajectory->localization && trajectory->localization->localized);
   trajectory->is_searched = true;
   trajectory->is_restarted = true;
-  trajectory->scans.clear();
-  trajectory->waiting_scans.clear();
+  trajectory->DropScans();
   trajectory->is_session_restarted = true;
   trajectory->is_followed = false;
   trajectory->search_begin = trajectory->distance_driven;
@@ -252,8 +251,7 @@ void Searcher::FinishTrajectory(const int trajectory_id,
               << " ended before it was localised in the map";
   }
   trajectory.is_searched = false;
-  trajectory.scans.clear();
-  trajectory.waiting_scans.clear();
+  trajectory.DropScans();
   worker_.Schedule([this, trajectory_id] { scan_search_.Stop(trajectory_id); });
 }
 
@@ -270,8 +268,7 @@ void Searcher::ForgetTrajectory(const int trajectory_id) {
   if (found == trajectories_.end()) return;
   found->second.is_finished = true;
   found->second.is_searched = false;
-  found->second.scans.clear();
-  found->second.waiting_scans.clear();
+  found->second.DropScans();
   worker_.Schedule([this, trajectory_id] { scan_search_.Stop(trajectory_id); });
 }
 

@@ -145,6 +145,12 @@ class Searcher : public std::enable_shared_from_this<Searcher> {
     // Its pose is the one that was found: where scans contradict it, the
     // trajectory is lost.
     bool is_followed = false;
+
+    // Not clear(), which keeps the memory, for every trajectory there was.
+    void DropScans() {
+      std::vector<NodeWithScan>().swap(scans);
+      std::deque<OdometryScan>().swap(waiting_scans);
+    }
   };
   // A recorded closure; holds its constraints while they wait. Kept small:
   // without the inliers and rivals of its match.

@@ -414,7 +414,7 @@ bool Searcher::RecordQuery(const BackgroundSearch::Query& query,
                                    kQueryBackoff * result->distance_driven);
   if (!result->localized) return false;
   trajectory.is_searched = false;
-  trajectory.scans.clear();
+  std::vector<NodeWithScan>().swap(trajectory.scans);
   // If the trajectory was localised before, constraints from before the
   // kidnapping would pull against those from after it.
   const bool may_inject = MayInject() && !trajectory.was_localized;
