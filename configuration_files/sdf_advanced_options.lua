@@ -518,9 +518,11 @@ SDF_GLOBAL_CONSTRAINTS = {
       -- [m] Least distance from the lidar to a wall.
       min_clearance_meters = 0.15,
     },
-    -- Poses that are registered, of those that fit best. Larger: slower, and
-    -- less likely that the right one is missed.
+    -- Poses that are registered, of those at which the ranges fit best, and of
+    -- those at which the most echoes are near walls, whatever stands between.
+    -- Larger: slower, and less likely that the right one is missed.
     num_registered_poses = 200,
+    num_echo_poses = 100,
     -- Least number of echoes, of which each degree counts once.
     min_num_beams = 30,
     -- [m] Farther echoes are left out.
@@ -531,21 +533,21 @@ SDF_GLOBAL_CONSTRAINTS = {
     -- Which of the candidates is the right one. Learned by
     -- scripts/measure_scan_localization.py, as those below.
     candidate_weights = {
-      fit = 31.8,
-      loose_fit = -16.5,
-      log_through = -1.98,
-      log_free = -0.92,
-      in_unknown = -4.1,
+      fit = 27.8,
+      loose_fit = -23.1,
+      log_through = -1.85,
+      log_free = -0.9,
+      in_unknown = -8.3,
     },
     -- Whether the right pose is among the candidates at all.
     presence_weights = {
-      loose_fit = -19.3,
-      log_through = -1.71,
-      log_free = -0.34,
-      in_unknown = -7.85,
-      num_beams = 1.88,
-      lead = 24.3,
-      bias = -7.5,
+      loose_fit = -22.4,
+      log_through = -1.27,
+      log_free = -0.08,
+      in_unknown = -4.1,
+      num_beams = 1.25,
+      lead = 24.9,
+      bias = -5.2,
     },
   },
   -- Localisation of a robot that drives, by scans with odometry (relocalize

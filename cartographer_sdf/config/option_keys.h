@@ -395,6 +395,7 @@ inline void VisitOptions(OptionVisitor& visit,
                          ScanLocalizationOptions& options) {
   visit("viewpoints", options.viewpoints);
   visit("num_registered_poses", options.num_registered_poses);
+  visit("num_echo_poses", options.num_echo_poses);
   visit("min_num_beams", options.min_num_beams);
   visit("max_range_meters", options.max_range_meters);
   visit("candidate_weights", options.candidate_weights);

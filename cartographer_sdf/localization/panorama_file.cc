@@ -163,7 +163,8 @@ absl::StatusOr<DrawnMap> DecodePanoramas(const RecordReader& reader,
   Viewpoints viewpoints;
   problem = DecodeViewpoints(proto, rays->geometry(), &viewpoints);
   if (!problem.empty()) return reader.Corrupted(problem);
-  return DrawnMap{std::move(grid), {*std::move(rays), std::move(viewpoints)}};
+  return DrawnMap{std::move(grid),
+                  MakePanoramaMap(*std::move(rays), std::move(viewpoints))};
 }
 
 }  // namespace

@@ -24,25 +24,25 @@ namespace cartographer_sdf {
 // those below, are learned on scans of several buildings in their own map and
 // in others'; see scripts/measure_scan_localization.py.
 struct CandidateWeights {
-  double fit = 31.8;           // BeamEvidence::fit
-  double loose_fit = -16.5;    // echoes near a wall, less their fit
-  double log_through = -1.98;  // ln(0.03 + beams through walls)
-  double log_free = -0.92;     // ln(0.03 + echoes in free space)
-  double in_unknown = -4.1;    // beams that end in unknown space
+  double fit = 27.8;           // BeamEvidence::fit
+  double loose_fit = -23.1;    // echoes near a wall, less their fit
+  double log_through = -1.85;  // ln(0.03 + beams through walls)
+  double log_free = -0.9;      // ln(0.03 + echoes in free space)
+  double in_unknown = -8.3;    // beams that end in unknown space
 };
 [[nodiscard]] std::string Validate(const CandidateWeights& weights);
 
 // Whether the right pose is among the candidates: the log-odds of it are the
 // sum of these terms, of the best candidate.
 struct PresenceWeights {
-  double loose_fit = -19.3;
-  double log_through = -1.71;
-  double log_free = -0.34;
-  double in_unknown = -7.85;
-  double num_beams = 1.88;  // in turns, of one beam per degree
+  double loose_fit = -22.4;
+  double log_through = -1.27;
+  double log_free = -0.08;
+  double in_unknown = -4.1;
+  double num_beams = 1.25;  // in turns, of one beam per degree
   // How much better it fits than what fits by chance: the sixth best candidate.
-  double lead = 24.3;
-  double bias = -7.5;
+  double lead = 24.9;
+  double bias = -5.2;
 };
 [[nodiscard]] std::string Validate(const PresenceWeights& weights);
 

@@ -103,6 +103,9 @@ std::string Validate(const ScanLocalizationOptions& options) {
       options.num_registered_poses > 100'000) {
     return "num_registered_poses must lie between 1 and 100000";
   }
+  if (options.num_echo_poses < 0 || options.num_echo_poses > 100'000) {
+    return "num_echo_poses must lie between 0 and 100000";
+  }
   if (options.min_num_beams < 5 ||
       options.min_num_beams > kNumMeasuredDirections) {
     return "min_num_beams must lie between 5 and 360";
@@ -125,7 +128,12 @@ std::optional<PanoramaMap> MakePanoramaMap(
       ReachableCells(*rays, options.min_clearance_meters, driven_positions);
   if (!reachable.any()) return std::nullopt;
   Viewpoints viewpoints = MakeViewpoints(options, *rays, reachable);
-  return PanoramaMap{*std::move(rays), std::move(viewpoints)};
+  return MakePanoramaMap(*std::move(rays), std::move(viewpoints));
+}
+
+PanoramaMap MakePanoramaMap(RayMap rays, Viewpoints viewpoints) {
+  EchoMap echoes = MakeEchoMap(rays, viewpoints);
+  return {std::move(rays), std::move(viewpoints), std::move(echoes)};
 }
 
 std::vector<Rigid2> FindLikelyPoses(
@@ -133,12 +141,16 @@ std::vector<Rigid2> FindLikelyPoses(
     const std::vector<RobotScan>& scans,
     std::vector<std::pair<std::string, double>>* const stage_seconds) {
   StageClock clock({}, stage_seconds);
-  clock.Begin("search");
+  clock.Begin("search panoramas");
   const Sweep coarse =
       MakeSweep(scans, kNumDirections, options.max_range_meters);
-  const std::vector<Rigid2> poses =
+  std::vector<Rigid2> poses =
       SearchPanoramas(map.viewpoints, map.rays.geometry().resolution, coarse,
                       static_cast<size_t>(options.num_registered_poses));
+  clock.Begin("search echoes");
+  const std::vector<Rigid2> by_echoes = SearchEchoes(
+      map.echoes, coarse, static_cast<size_t>(options.num_echo_poses));
+  poses.insert(poses.end(), by_echoes.begin(), by_echoes.end());
   clock.Begin("register coarsely");
   std::vector<Rigid2> likely =
       PosesOf(RegisterAll(options.candidate_weights, map.rays, coarse,

@@ -18,6 +18,7 @@
 #include "cartographer_sdf/geometry/rigid2.h"
 #include "cartographer_sdf/grid/occupancy_grid.h"
 #include "cartographer_sdf/grid/scan.h"
+#include "cartographer_sdf/localization/echo_search.h"
 #include "cartographer_sdf/localization/ray_map.h"
 #include "cartographer_sdf/localization/scan_judgement.h"
 #include "cartographer_sdf/localization/viewpoints.h"
@@ -26,9 +27,11 @@ namespace cartographer_sdf {
 
 struct ScanLocalizationOptions {
   ViewpointOptions viewpoints;
-  // Poses of the search that are registered. Larger: slower, and less likely
-  // that the right one is missed.
+  // Poses of the search by panoramas that are registered. Larger: slower, and
+  // less likely that the right one is missed.
   int num_registered_poses = 200;
+  // The same of the search by echoes alone (echo_search.h).
+  int num_echo_poses = 100;
   // Fewer beams, of one per degree, show too little.
   int min_num_beams = 30;
   // Points farther from the sensor are left out [m].
@@ -44,6 +47,7 @@ struct ScanLocalizationOptions {
 struct PanoramaMap {
   RayMap rays;
   Viewpoints viewpoints;
+  EchoMap echoes;
 };
 
 // The grid's submap frame is the map frame. `driven_positions` [m, map frame]:
@@ -53,8 +57,12 @@ struct PanoramaMap {
     const ViewpointOptions& options, const OccupancyGrid& grid,
     const std::vector<Eigen::Vector2d>& driven_positions);
 
-// The first part of LocalizeScans: searches, and registers with few beams.
-// Returns distinct poses of the robot in the grid frame, the best first.
+// Of viewpoints that were made of the map before.
+[[nodiscard]] PanoramaMap MakePanoramaMap(RayMap rays, Viewpoints viewpoints);
+
+// The first part of LocalizeScans: searches by panoramas and by echoes, and
+// registers with few beams. Returns distinct poses of the robot in the grid
+// frame, the best first.
 [[nodiscard]] std::vector<Rigid2> FindLikelyPoses(
     const ScanLocalizationOptions& options, const PanoramaMap& map,
     const std::vector<RobotScan>& scans,
