@@ -547,7 +547,7 @@ SDF_GLOBAL_CONSTRAINTS = {
       in_unknown = -4.1,
       num_beams = 1.25,
       lead = 24.9,
-      bias = -5.2,
+      bias = -5.5,
     },
   },
   -- Localisation of a robot that drives, by scans with odometry (relocalize

@@ -78,7 +78,7 @@ class PaddedScores {
     for (const Eigen::Vector2d& echo : echoes) {
       range = std::max(range, echo.norm());
     }
-    padding_ = static_cast<int>(std::ceil(range / map.side)) + 1;
+    padding_ = static_cast<Eigen::Index>(std::ceil(range / map.side)) + 1;
     scores_.setZero(map.scores.rows() + 2 * padding_ + kBlockSize,
                     map.scores.cols() + 2 * padding_);
     scores_.block(padding_, padding_, map.scores.rows(), map.scores.cols()) =
@@ -116,7 +116,7 @@ class PaddedScores {
     return word;
   }
 
-  int padding_;
+  Eigen::Index padding_;
   Eigen::Array<uint8_t, Eigen::Dynamic, Eigen::Dynamic> scores_;
 };
 
