@@ -63,6 +63,13 @@ std::string DescribeFit(const BeamEvidence& evidence) {
 }
 
 // Of the candidates, how many it takes to hold nine tenths of what they hold.
+// How well it fits by chance; nothing where there are few poses.
+std::string DescribeChance(const std::vector<ScanCandidate>& candidates) {
+  if (candidates.size() <= kChanceCandidate) return "";
+  return absl::StrFormat(", at the sixth best %.0f %% end at walls",
+                         100. * candidates[kChanceCandidate].evidence.at_wall);
+}
+
 size_t NumLikely(const ScanLocalization& result) {
   double left = 0.9 * (1. - *result.elsewhere_probability);
   size_t count = 0;
@@ -139,10 +146,11 @@ void JudgeCandidates(const double min_probability, const double widest_gap,
   } else if (*result->elsewhere_probability > 0.5) {
     result->verdict = LocalizationVerdict::kNothingAlike;
     result->reason = absl::StrFormat(
-        "it fits nowhere well: at the best pose %s; with the probability %.2f "
-        "the robot is where the map never was, or too much has changed; %s",
-        DescribeFit(best.evidence), *result->elsewhere_probability,
-        AdviceForGap(widest_gap));
+        "it fits nowhere well enough: at the best pose %s%s; with the "
+        "probability %.2f the robot is where the map never was, or too much "
+        "has changed; %s",
+        DescribeFit(best.evidence), DescribeChance(result->candidates),
+        *result->elsewhere_probability, AdviceForGap(widest_gap));
   } else if (*result->elsewhere_probability <= kMaxElsewhereIfAmbiguous &&
              NumLikely(*result) > 1) {
     result->verdict = LocalizationVerdict::kAmbiguous;

@@ -183,7 +183,8 @@ std::vector<RowStatus> RefusalStatuses(const std::string& path) {
   };
   return {
       status(Verdict::kContradicted, "refused: contradicted",
-             "Walls of one stand in free space of the other.",
+             "Walls of one stand in free space of the other, or, between two "
+             "trajectories, long ones do so in many pairs around.",
              "match.verification.judgement.max_contradiction_ratio"),
       status(Verdict::kAmbiguous, "refused: ambiguous",
              "Another pose of the two submaps is as good.",
