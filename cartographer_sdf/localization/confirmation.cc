@@ -122,8 +122,9 @@ class Confirmer {
     for (size_t k = 0; k < indices.size(); ++k) {
       if (!lengths[k]) continue;
       ++confirmation->num_compared;
-      if (*lengths[k] <= task_.match.verification.crossing.max_wall_meters)
+      if (*lengths[k] <= task_.match.verification.crossing.max_wall_meters) {
         continue;
+      }
       const PairPose& pair = pairs[indices[k]];
       confirmation->crossing_walls.push_back(
           {pair.reference, pair.query, *lengths[k]});

@@ -20,14 +20,15 @@ namespace {
 // Distances from the middle of a square to a wall, as fractions of its side:
 // the least is half of it, as far as an echo may be from the middle.
 constexpr double kScoreStep = 0.5;
-// So many echoes are compared, evenly spaced among all. Their scores fit into a
-// byte.
+// So many echoes are compared, evenly spaced among all: as many as make a sum
+// of scores that fits into a byte.
 constexpr size_t kMaxNumEchoes = 64;
 static_assert(kMaxNumEchoes * EchoMap::kMaxScore <= UINT8_MAX);
-// Nearer echoes are left out [m]: they tell little, as there is something near
-// walls everywhere, and of chairs around the robot there are many.
+// Nearer echoes are left out [m]: near any wall some of them fit, and among
+// chairs they are most of all echoes.
 constexpr double kMinRange = 1.2;
-// In a map with room for more, squares are larger than viewpoints are apart.
+// In a map with room for more, squares are larger than viewpoints are apart, so
+// that a search takes no more than some 12 ms.
 constexpr double kMaxNumStandingSquares = 12000.;
 // Poses that are kept for each that is returned: neighbours are near each
 // other.
@@ -158,8 +159,9 @@ std::vector<ScoredPose> BestPoses(const EchoMap& map,
       const BlockSums sums = scores.Sum(block, steps);
       const bool is_full = kept.size() >= max_num_poses;
       if (is_full &&
-          *std::max_element(sums.begin(), sums.end()) <= kept.top().score)
+          *std::max_element(sums.begin(), sums.end()) <= kept.top().score) {
         continue;
+      }
       for (int k = 0; k < kBlockSize; ++k) {
         if (is_full && sums[k] <= kept.top().score) continue;
         const int x = block.x + k;

@@ -38,7 +38,7 @@ struct EchoMap {
 
 // Returns at most `max_num_poses` distinct poses of the robot in the grid
 // frame, those first with the most echoes near walls. Deterministic. Empty if
-// the sweep has no echo.
+// the sweep has no echo beyond 1.2 m.
 [[nodiscard]] std::vector<Rigid2> SearchEchoes(const EchoMap& map,
                                                const Sweep& sweep,
                                                size_t max_num_poses);

@@ -103,8 +103,8 @@ std::string Validate(const ScanLocalizationOptions& options) {
       options.num_registered_poses > 100'000) {
     return "num_registered_poses must lie between 1 and 100000";
   }
-  if (options.num_echo_poses < 0 || options.num_echo_poses > 100'000) {
-    return "num_echo_poses must lie between 0 and 100000";
+  if (options.num_echo_poses < 0 || options.num_echo_poses > 10'000) {
+    return "num_echo_poses must lie between 0 and 10000";
   }
   if (options.min_num_beams < 5 ||
       options.min_num_beams > kNumMeasuredDirections) {

@@ -39,7 +39,8 @@ struct RecognitionOptions {
   bool verify_neighbourhoods = true;
   TrajectoryLinkOptions links;
   NeighbourhoodOptions neighbourhood;
-  // Both are applied together with the verification of neighbourhoods.
+  // Both are applied together with the verification of neighbourhoods, as is
+  // match.verification.crossing.
   RivalMatchOptions rivals;
   MatchSupportOptions support;
 };

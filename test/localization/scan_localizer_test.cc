@@ -234,6 +234,9 @@ TEST(ScanLocalizationOptionsTest, AreValidated) {
   options.num_registered_poses = 0;
   EXPECT_THAT(Validate(options), HasSubstr("num_registered_poses"));
   options = {};
+  options.num_echo_poses = 10'001;
+  EXPECT_THAT(Validate(options), HasSubstr("num_echo_poses"));
+  options = {};
   options.min_num_beams = 0;
   EXPECT_THAT(Validate(options), HasSubstr("min_num_beams"));
   options = {};

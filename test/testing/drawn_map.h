@@ -7,6 +7,7 @@
 #ifndef TEST_TESTING_DRAWN_MAP_H_
 #define TEST_TESTING_DRAWN_MAP_H_
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,6 +27,25 @@ inline OccupancyGrid TwoRoomsGrid() {
     viewpoints.emplace_back(x, 6.1);
   }
   return SeeFrom(TwoRooms(), Rigid2(), viewpoints);
+}
+
+// Whether one of the poses is as near to the truth as a search is fine.
+inline bool HasPoseNear(const std::vector<Rigid2>& poses, const Rigid2& truth) {
+  return std::any_of(poses.begin(), poses.end(), [&truth](const Rigid2& pose) {
+    return (pose.translation() - truth.translation()).norm() < 0.4 &&
+           std::abs(NormalizeAngle(pose.rotation() - truth.rotation())) < 0.1;
+  });
+}
+
+// Whether the few are the first of the many, which are more.
+inline bool AreFirstOf(const std::vector<Rigid2>& few,
+                       const std::vector<Rigid2>& many) {
+  return few.size() < many.size() &&
+         std::equal(few.begin(), few.end(), many.begin(),
+                    [](const Rigid2& a, const Rigid2& b) {
+                      return a.translation() == b.translation() &&
+                             a.rotation() == b.rotation();
+                    });
 }
 
 // Echoes in the robot's frame, of beams all round that go no farther than 9 m.
